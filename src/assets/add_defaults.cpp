@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera and the lights of a scene that has none.
+// Default camera and lights for a scene without.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,24 +16,25 @@ constexpr double kRadians = std::numbers::pi / 180;
 
 // A three-quarter view: glTF assets face +z.
 constexpr double kAzimuth = 35, kElevation = 20, kFieldOfView = 30;  // degrees
-constexpr double kMargin = 1.05;  // margin of the sphere that the picture holds
+constexpr double kMargin = 1.05;  // radius of the visible sphere, over the asset's
 constexpr int kSamplesPerPixel = 4;
 
-/// A ball that lights the asset, unseen: where, in units along the picture's right, the world's up and towards the camera;
-/// its radius over that of the asset; and the radiance of a white matte surface at the asset's centre facing it.
+/// An invisible sphere light: position, in units along the image's right, the world's up and towards the
+/// camera; radius over that of the asset; and radiance of a white diffuse surface at the asset's centre
+/// facing it.
 struct DefaultLight {
   const char* name;
   Vec3d direction;
   double radius, white;
 };
 
-// Where the asset comes nearest to a light it is 1.8 times as bright: white stays below 1 there, too.
+// White stays below 1 even at the asset's points nearest to a light, up to 1.8 times as bright.
 constexpr std::array<DefaultLight, 3> kLights{
     {{"key", {-.7, .7, .7}, .8, .52}, {"fill", {.9, .2, .8}, 1.2, .16}, {"rim", {.3, 1, -.8}, .6, .35}}};
 constexpr double kLightDistance = 4;  // over the asset's radius
 constexpr double kWhite = .8;         // exposure of a white surface under the asset's own lights
 
-// Where the PNG must be darkened by more stops than this, highlights may be beyond the largest half, 65504.
+// Darkening of the PNG, stops, above which highlights may exceed the largest half, 65504.
 constexpr double kHalfExposure = -8;
 
 Vec3d default_view() {
@@ -54,12 +55,13 @@ Vec3d vector_of(const Json& triple) {
   return {triple[0].get<double>(), triple[1].get<double>(), triple[2].get<double>()};
 }
 
-/// Unit vectors by which lights are placed.
+/// Frame for placing lights.
 struct ViewFrame {
   Vec3d right, up, towards_camera;
 };
 
-/// View from the scene's camera to the asset's centre. The default view if the camera is at the centre or looks along up.
+/// View from the scene's camera to the asset's centre. The default view if the camera is at the centre or
+/// looks along up.
 ViewFrame view_frame(const AssetScene& scene) {
   const Vec3d up{0, 1, 0};
   Vec3d towards = vector_of(scene.camera["position"]) - scene.center;
@@ -88,7 +90,7 @@ void add_lights(AssetScene& scene) {
   scene.translated.push_back("no lights: adds default lights key, fill and rim around the asset");
 }
 
-/// White, facing all lights at the asset's centre, comes out as kWhite in the PNG.
+/// Exposure mapping a white surface, facing all lights at the asset's centre, to kWhite in the PNG.
 void add_exposure(AssetScene& scene) {
   const double stops = std::log2(kWhite * std::numbers::pi / scene.center_irradiance);
   const double exposure = std::clamp(std::round(stops * 100) / 100, -100., 100.);

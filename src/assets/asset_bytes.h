@@ -10,8 +10,8 @@ namespace opaline {
 /// error Error{bad_input} naming it: missing, not a file, larger than memory
 std::string read_asset_bytes(const std::string& path);
 
-/// How a scene file calls a file, by its place from the asset's.
-/// in    path: the asset's; mesh_path: how the scene file calls that
+/// Name of a file in the scene file, from its path relative to the asset.
+/// in    path: the asset's; mesh_path: its name in the scene file
 std::string scene_name_of(const std::filesystem::path& file, const std::string& path,
                           const std::string& mesh_path);
 

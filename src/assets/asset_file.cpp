@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 std::atomic<bool> outside_is_allowed = false;
 
-/// Whatever it is: opening it tells.
+/// True for anything at the path; opening it reports errors.
 bool is_there(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
@@ -24,7 +24,7 @@ bool has_drive(const std::string& name) {
   return name.size() > 1 && std::isalpha(static_cast<unsigned char>(name[0])) != 0 && name[1] == ':';
 }
 
-/// The file of this name in a folder, whatever folders of another machine stand before it.
+/// File of this name in a folder, ignoring folders of another machine in its path.
 fs::path beside(const std::string& name, const fs::path& folder) {
   return folder / name.substr(name.find_last_of("/:") + 1);
 }

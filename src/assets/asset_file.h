@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that an asset names: they lie in its folder.
+// Files referenced by an asset, inside its folder.
 #pragma once
 
 #include <filesystem>
@@ -19,10 +19,10 @@ struct OutsideAsset : Error {
   using Error::Error;
 };
 
-/// Finds a file by the name that an asset gives it: relative to `folder`, with slashes or backslashes. Where nothing is
-/// there, as under a path of another machine, the file of that name in the same folder.
-/// in    asset: in whose folder the file must lie; folder: of the file whose text has the name
-/// error OutsideAsset naming the asset and the file: it lies outside, also by way of a link, and
+/// Finds a file by the name in an asset: relative to `folder`, with slashes or backslashes. If missing, as
+/// with paths of another machine, finds the file of that name in the same folder.
+/// in    asset: its folder must contain the file; folder: of the referring file
+/// error OutsideAsset naming the asset and the file: it is outside, possibly through a link, and
 ///       allow_files_outside_assets was not called
 NamedFile find_named_file(const std::string& name, const std::string& asset,
                           const std::filesystem::path& folder);

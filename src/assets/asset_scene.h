@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene on its way from an asset to the text of a scene file.
+// Intermediate scene between an asset and a scene file.
 #pragma once
 
 #include <algorithm>
@@ -18,20 +18,20 @@ namespace opaline {
 
 using Json = nlohmann::ordered_json;
 
-/// Lengths in the asset's unit. Each Json as the scene file has it; null or empty: the asset has none.
+/// Lengths in the asset's unit. Each Json as in the scene file; null or empty: missing in the asset.
 struct AssetScene {
   double mm_per_unit = 1;
   Json media = Json::object(), shapes = Json::array(), lights = Json::array(), camera, film = Json::object();
   Vec3d center;                  ///< center of the box around the shapes
-  double radius = 1;             ///< from there to the outermost vertex
-  double center_irradiance = 0;  ///< that its lights bring to a surface there facing them
-  bool is_one_mesh = false;      ///< its shapes are parts of one body
+  double radius = 1;             ///< distance from there to the farthest vertex
+  double center_irradiance = 0;  ///< irradiance from its lights at the center, facing them
+  bool is_one_mesh = false;      ///< true if its shapes are parts of one body
   bool has_vertex_colors = false;
   std::vector<std::string> translated, not_carried;
-  std::vector<std::string> warnings;  ///< warnings of what changes the image
+  std::vector<std::string> warnings;  ///< changes of the image
   std::size_t bytes = 0;              ///< as ImportedAsset's
 
-  /// Something of a file or a record in it that is lost and changes the image.
+  /// Adds a warning of a lost statement or value of a file that changes the image.
   void warn(const std::string& place, const std::string& what) {
     not_carried.push_back(what);
     warnings.push_back(place + ": " + what);
@@ -45,15 +45,15 @@ struct SurfaceTranslation {
   Vec3d reflectance{1, 1, 1};
 };
 
-/// Where an asset is, and how the scene file calls it.
+/// Path of an asset, and its name in the scene file.
 struct AssetPlace {
   std::string path, mesh_path;
 };
 
-/// A surface of a MaterialX file.
-/// in    file_and_name: "skin.mtlx", or "skin.mtlx#name" of a surface or material in it; scene: whose unit its lengths
-///       are in, and which is told what became of the values
-/// error Error{bad_input} naming the file: no XML, no such surface, a value that is not of its type
+/// Translates a surface of a MaterialX file.
+/// in    file_and_name: "skin.mtlx", or "skin.mtlx#name" of a surface or material in it; scene: provides the
+///       unit of lengths, and receives warnings
+/// error Error{bad_input} naming the file: not XML, no such surface, a value of the wrong type
 SurfaceTranslation translate_materialx(const std::string& file_and_name, const AssetPlace& asset,
                                        AssetScene& scene);
 
@@ -62,14 +62,13 @@ AssetScene import_obj(const std::string& path, const std::string& mesh_path);
 /// PLY, STL and OFF.
 AssetScene import_mesh(const std::string& path, const std::string& mesh_path);
 
-/// Gives a camera and lights to a scene without, and an exposure that suits its lights.
+/// Adds a camera and lights to a scene without, and an exposure for its lights.
 void add_defaults(AssetScene& scene);
 
-/// The scene file's text: indented, numbers belonging together on one line, what was not carried over in
-/// comments at its top.
+/// Text of the scene file: indented, vectors on one line, unsupported statements in comments at its top.
 std::string scene_text(const AssetScene& scene, const std::string& asset);
 
-/// Sets the scene's center and radius. for_each_point(visit): calls visit of each vertex, each time it is called.
+/// Sets the scene's center and radius. for_each_point(visit): calls visit for each vertex; called repeatedly.
 template <class ForEachPoint>
 void enclose(AssetScene& scene, const ForEachPoint& for_each_point) {
   Vec3d low(1e300), high(-1e300);
@@ -80,7 +79,7 @@ void enclose(AssetScene& scene, const ForEachPoint& for_each_point) {
   scene.radius = std::max(std::sqrt(square), 1e-12);
 }
 
-/// Names, each used once: a second "wax" becomes "wax-2".
+/// Unique names: a second "wax" becomes "wax-2".
 class UniqueNames {
  public:
   std::string take(const std::string& wanted, const std::string& otherwise);
@@ -93,7 +92,7 @@ class UniqueNames {
 /// In quotes, without control characters.
 std::string in_quotes(std::string_view name);
 
-/// "[0.8, 0.5, 0.2]", or one number where the three are the same.
+/// "[0.8, 0.5, 0.2]", or one number for three equal ones.
 std::string short_triple(const Vec3d& value);
 
 Json triple_json(const Vec3d& value);

@@ -81,7 +81,7 @@ class GltfBuilder {
  public:
   explicit GltfBuilder(GltfModel& gltf) : gltf_(gltf) {}
 
-  /// Records are taken and forgotten as they are met: so the JSON of a million nodes is never held as a whole.
+  /// Processes and frees records as they are parsed, so the JSON of a million nodes never exists as a whole.
   std::vector<GltfBuffer> run(std::string_view text) {
     const auto take_records = [this](int depth, Json::parse_event_t event, Json& parsed) {
       return keeps(depth, event, parsed);

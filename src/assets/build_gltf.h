@@ -7,15 +7,15 @@
 
 namespace opaline {
 
-/// Buffers as the file lists them.
+/// Buffers in the file's order.
 struct GltfBuffer {
   std::size_t length = 0;
   std::string uri;
 };
 
-/// Reads a file's JSON, a record at a time.
-/// out   all of the model but its buffers; returns those that the file lists
-/// error Error{bad_input} naming the record: a value that is not of its type, no glTF 2.0
+/// Reads a file's JSON, record by record.
+/// out   the model without its buffers; returns the listed buffers
+/// error Error{bad_input} naming the record: a value of the wrong type, or not glTF 2.0
 std::vector<GltfBuffer> build_gltf(std::string_view json, GltfModel& gltf);
 
 }  // namespace opaline

@@ -112,7 +112,7 @@ class AccessorReader {
 
   Elements dense(std::size_t bytes) const {
     if (accessor_.view != kNoRecord) return within(accessor_.view, accessor_.offset, accessor_.count, bytes);
-    constexpr std::size_t most = 1 << 20;  // no file stands behind this number
+    constexpr std::size_t most = 1 << 20;  // limit without data in a file
     if (accessor_.count > most)
       fail("has no bufferView: its elements are 0", "at most " + std::to_string(most) + " of them",
            std::to_string(accessor_.count));

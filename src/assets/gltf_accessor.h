@@ -11,9 +11,9 @@
 
 namespace opaline {
 
-/// in    index: of an accessor that is there
-/// out   its vectors, sparse ones put in place, normalized integers as glTF says
-/// error Error{bad_input}: it is no VEC3, or reaches beyond its buffer view
+/// in    index: of an existing accessor
+/// out   its vectors, with sparse ones substituted, and normalized integers converted
+/// error Error{bad_input}: not a VEC3, or beyond its buffer view
 std::vector<Vec3d> read_vectors(const GltfModel& gltf, std::uint32_t index);
 
 /// The same of VEC4.

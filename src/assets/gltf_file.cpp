@@ -22,7 +22,7 @@ bool is_chunk(std::string_view file, std::size_t at, std::string_view type) {
   return at + kChunkHeader <= file.size() && file.substr(at + 4, 4) == type;
 }
 
-/// The bytes behind a chunk's header.
+/// Bytes after a chunk's header.
 std::string_view chunk_at(const std::string& path, std::string_view file, std::size_t at, const char* name) {
   const std::size_t length = number_at(file, at), rest = file.size() - at - kChunkHeader;
   if (length > rest)

@@ -9,18 +9,18 @@
 namespace opaline {
 
 struct GltfChunks {
-  std::string_view json, binary;  ///< binary: of a GLB alone
-  bool is_aligned = true;         ///< to 4 bytes, as glTF wants it
+  std::string_view json, binary;  ///< binary: GLB only
+  bool is_aligned = true;         ///< to 4 bytes, as required by glTF
 };
 
-/// The chunks of a GLB file, or all of another one as JSON.
-/// error Error{bad_input} naming the file: a version that is not read, a chunk that is cut off
+/// Chunks of a GLB file, or the whole of another file as JSON.
+/// error Error{bad_input} naming the file: an unsupported version, or a truncated chunk
 GltfChunks gltf_chunks(const std::string& path, std::string_view file);
 
 bool is_data_uri(const std::string& uri);
-/// None: it is broken.
+/// None: malformed.
 std::optional<std::string> data_of_uri(const std::string& uri);
-/// "%20" and the like as the bytes that they stand for.
+/// Decodes "%20" and similar escapes.
 std::string decoded_uri(std::string_view uri);
 
 }  // namespace opaline

@@ -19,12 +19,12 @@ namespace opaline {
 namespace {
 
 constexpr double kMillimetres = 1000;  // in glTF's metre
-// Attenuation of a channel that light crosses without loss, or not at all, over the attenuation distance.
+// Range of a channel's attenuation over the attenuation distance, excluding opaque and lossless channels.
 constexpr double kDarkest = 1e-6, kClearest = .999;
 constexpr double kMostAnisotropy = .99;
 constexpr double kLeastIor = .1, kMostIor = 10, kGltfIor = 1.5;
 
-/// How light scatters in a volume, in either spelling of the draft.
+/// Scattering of a volume, in either spelling of the draft.
 struct Scatter {
   Vec3d multiscatter_color;  ///< times the strength
   double anisotropy;
@@ -35,8 +35,8 @@ struct Shares {
   double absorbed, scattered;
 };
 
-/// The single-scattering albedo whose half space reflects `color` (Kulla & Conty 2017, with the anisotropy of
-/// van de Hulst's similarity), for an index-matched boundary as the glTF draft has it.
+/// Single-scattering albedo of an index-matched half space with the reflectance `color` (Kulla & Conty 2017,
+/// with van de Hulst's similarity for anisotropy), as in the glTF draft.
 Shares single_scattering(double color, double g) {
   const double s = 4.09712 + 4.20863 * color - std::sqrt(9.59217 + 41.6808 * color + 17.7126 * color * color);
   const double square = std::clamp(s * s, 0., 1.), scale = 1 / (1 - g * square);
@@ -51,7 +51,7 @@ Vec3d color_of(const GltfRecord& record, const char* key, const Vec3d& otherwise
 
 constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
-/// Colour, metalness and roughness, as either model of glTF gives them.
+/// Colour, metalness and roughness from either of glTF's models.
 struct BaseLayer {
   Vec3d color{1, 1, 1};
   double metalness = 1, roughness = 1;
@@ -70,7 +70,7 @@ BaseLayer metallic_roughness(const GltfRecord& pbr) {
   return base;
 }
 
-/// The metal and its colour that reflect as much as a diffuse and a specular colour: Khronos's conversion (glTF
+/// Metalness and base colour equivalent to a diffuse and a specular colour: Khronos's conversion (glTF
 /// repository, extensions/2.0/Archived/KHR_materials_pbrSpecularGlossiness).
 BaseLayer specular_glossiness(const GltfRecord& model) {
   constexpr double kDielectric = .04, kLeast = 1e-6;
@@ -138,7 +138,7 @@ class MaterialTranslator {
 
   void warn(const std::string& text) { scene_.warn(gltf_.path, label_ + ": " + text); }
 
-  /// None: the material has none, or it is not carried over.
+  /// None: missing, or not supported.
   std::optional<Json> texture(const GltfRecord& info, const std::string& name) {
     if (info.index("index") == kNoRecord) return {};
     if (!use_.has_uvs) {
@@ -194,7 +194,7 @@ class MaterialTranslator {
                            short_triple(surface.reflectance), metalness, roughness));
   }
 
-  /// Both alphas are met exactly: the roughness that is returned is the factor's without anisotropy.
+  /// Keeps both alphas exact: returns the factor's roughness without anisotropy.
   double add_grain(Json& keys) {
     const double roughness = base_.roughness;
     const GltfRecord extension = values("KHR_materials_anisotropy");
@@ -240,8 +240,9 @@ class MaterialTranslator {
     translated(fmt::format("{} -> {} {}", name, key, short_triple(factor)));
   }
 
-  /// Light that is transmitted, clearly in the base colour or diffusely in another, scatters inside; the rest is reflected
-  /// in the base colour. Without either all enters, for nothing would scatter.
+  /// Transmitted light scatters inside: clear transmission in the base colour, or diffuse transmission in a
+  /// colour of its own. The rest is reflected in the base colour. Without either, all light enters, as
+  /// otherwise nothing would scatter.
   void add_entry(SurfaceTranslation& surface) {
     constexpr const char *kClear = "KHR_materials_transmission",
                          *kDiffuse = "KHR_materials_diffuse_transmission";
@@ -302,7 +303,7 @@ class MaterialTranslator {
     return kGltfIor;
   }
 
-  /// Null where nothing attenuates light.
+  /// Null without attenuation.
   Json make_medium(const Scatter& scatter) {
     const GltfRecord volume = values("KHR_materials_volume");
     const double distance = volume.number("attenuationDistance", std::numeric_limits<double>::infinity());
@@ -372,7 +373,7 @@ class MaterialTranslator {
     tell_extensions(is_translucent);
   }
 
-  /// Alpha of 1 everywhere says nothing.
+  /// Skips an alpha of 1 everywhere.
   void tell_alpha() {
     const std::string mode = material_.text("alphaMode", "OPAQUE");
     const std::vector<double> factor = material_.record("pbrMetallicRoughness").numbers("baseColorFactor", 4);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Conversion of a glTF material: to a translucent medium if it scatters light inside, else to a coated colour or metal.
+// Conversion of a glTF material: to a translucent medium if it scatters light inside, else to a coated colour
+// or metal.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +10,18 @@
 
 namespace opaline {
 
-/// Where a material is met.
+/// Use of a material.
 struct MaterialUse {
   std::uint32_t index = kNoRecord;  ///< none: glTF's default one, white
-  bool has_uvs = false;             ///< has uvs of what it is on
+  bool has_uvs = false;             ///< true if its mesh has UVs
   bool has_tangents = false;
-  std::string mesh_path{};  ///< how the scene file calls the asset
+  std::string mesh_path{};  ///< name of the asset in the scene file
 };
 
-/// error Error{bad_input} at a value that is not of its type
+/// error Error{bad_input} at a value of the wrong type
 SurfaceTranslation translate_material(const GltfModel& gltf, const MaterialUse& use, AssetScene& scene);
 
-/// How messages call it.
+/// Name in messages.
 std::string material_label(const GltfModel& gltf, std::size_t index);
 
 }  // namespace opaline

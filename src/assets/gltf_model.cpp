@@ -36,7 +36,7 @@ void check_compression(const GltfModel& gltf) {
                      "an asset exported without compression");
 }
 
-/// Indices between the records; all names are of their JSON.
+/// Checks indices between the records; names are as in their JSON.
 class ReferenceCheck {
  public:
   explicit ReferenceCheck(GltfModel& gltf) : gltf_(gltf) {}
@@ -126,7 +126,7 @@ std::size_t record_bytes(const GltfModel& gltf, std::string_view json) {
   return bytes;
 }
 
-/// The last asset, and what it was read from.
+/// The last asset, and its files.
 struct Kept {
   std::mutex mutex;
   std::shared_ptr<const GltfModel> gltf;
@@ -190,7 +190,7 @@ bool is_kept(const std::string& path, const std::string& file) {
   try {
     return contents_of(last.files, file) == last.gltf->contents;
   } catch (const Error&) {
-    return false;  // a buffer is gone: reading it again says which
+    return false;  // a buffer is missing: reading it again reports it
   }
 }
 

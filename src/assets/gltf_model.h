@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A glTF file as data, its references checked.
+// A glTF file as data, with checked references.
 #pragma once
 
 #include <array>
@@ -59,7 +59,7 @@ struct GltfNode {
   std::uint32_t mesh = kNoRecord, camera = kNoRecord, skin = kNoRecord, light = kNoRecord;
   std::uint32_t parent = kNoRecord;
   std::vector<std::uint32_t> children{};
-  std::unique_ptr<const Transform> placed{};  ///< in its parent; null: as that
+  std::unique_ptr<const Transform> placed{};  ///< transform in its parent; null: identity
 
   Transform to_parent() const { return placed ? *placed : Transform{}; }
 };
@@ -67,35 +67,36 @@ struct GltfNode {
 struct GltfModel {
   std::string path;
   std::string contents;               ///< hash of the file and of the buffers beside it
-  std::vector<std::string> warnings;  ///< warnings of a file that is not as glTF wants it
-  std::string file;                   ///< bytes that buffers point into
+  std::vector<std::string> warnings;  ///< deviations of the file from the glTF specification
+  std::string file;                   ///< bytes referenced by buffers
   std::deque<std::string> own_bytes;  ///< the same of other files and URIs
   std::vector<std::string_view> buffers;
   std::vector<GltfBufferView> views;
   std::vector<GltfAccessor> accessors;
   std::vector<GltfMesh> meshes;
   std::deque<GltfNode> nodes;
-  std::map<std::size_t, std::vector<double>> node_weights;  ///< in place of the mesh's, by node
+  std::map<std::size_t, std::vector<double>> node_weights;  ///< replace the mesh's, by node
   std::map<std::size_t, GltfAttributes> instances;          ///< EXT_mesh_gpu_instancing, by node
   std::vector<std::vector<std::uint32_t>> scenes;           ///< their roots
   std::uint32_t scene = kNoRecord;                          ///< to be shown
   std::vector<std::string> extensions_used, extensions_required;
   std::size_t animations = 0;
-  std::size_t record_bytes = 0;  ///< memory that the text and its nodes take, which may be a million
-  /// Lists whose records are read where they are used: a mistake in another one costs nothing.
+  std::size_t record_bytes = 0;  ///< memory of the text and its nodes
+  /// Lists of records read on use: an error in an unused one is not reported.
   std::map<std::string, std::vector<Json>, std::less<>> lists;
 
   /// A record of `lists`.
-  /// error Error{bad_input}: it is not there
+  /// error Error{bad_input}: missing
   GltfRecord record(const char* list, std::size_t index) const;
   std::size_t count(const char* list) const;
 };
 
-/// Reads a GLB or glTF file with its buffers, but not its images. The last one read is kept: an asset is asked for
+/// Reads a GLB or glTF file with its buffers, but not its images. Caches the last one, as an asset is loaded
 /// once for its nodes and once for each of its parts.
-/// out   every index between its records is in range, every buffer view within its buffer, no node has two parents
-/// error Error{bad_input} naming the file and the record: no such file, not glTF 2.0, a buffer that is missing or
-///       short, a reference to nothing, a value of a wrong type, mesh data in a compression that is not read
+/// out   every index between its records is in range, every buffer view within its buffer, no node has two
+///       parents
+/// error Error{bad_input} naming the file and the record: no such file, not glTF 2.0, a missing or short
+///       buffer, a dangling reference, a value of a wrong type, mesh data in an unsupported compression
 std::shared_ptr<const GltfModel> load_gltf(const std::string& path);
 
 /// Bytes of a buffer view.
@@ -103,11 +104,11 @@ inline std::string_view bytes_of(const GltfModel& gltf, const GltfBufferView& vi
   return gltf.buffers[view.buffer].substr(view.offset, view.length);
 }
 
-/// Where a node is in its scene.
+/// Transform of a node to its scene.
 /// error Error{bad_input}: it is its own parent
 Transform node_to_world(const GltfModel& gltf, std::size_t node);
 
-/// Turns as a quaternion x, y, z, w says, of any length but 0.
+/// Rotation by a quaternion x, y, z, w of any nonzero length.
 Transform rotation(const std::array<double, 4>& quaternion);
 
 }  // namespace opaline

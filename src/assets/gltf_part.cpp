@@ -20,7 +20,7 @@ constexpr double coordinate_limit = 1e18;
 
 struct PartIndex {
   std::size_t mesh, primitive;
-  std::optional<std::size_t> node;  ///< in whose pose it is
+  std::optional<std::size_t> node;  ///< pose of this node
 };
 
 std::string known_parts(const GltfModel& gltf) {
@@ -35,14 +35,14 @@ std::string known_parts(const GltfModel& gltf) {
   return text.empty() ? "a file with meshes" : text;
 }
 
-/// The whole text as a number; -1: it is none.
+/// The whole text as a number; -1: not one.
 std::int64_t whole_number(std::string_view text) {
   std::int64_t value = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() ? value : -1;
 }
 
-/// "mesh/primitive", or "mesh/primitive/node" of a node that has this mesh; none: there is no such part.
+/// "mesh/primitive", or "mesh/primitive/node" for a node with this mesh; none: no such part.
 std::optional<PartIndex> part_index(const GltfModel& gltf, std::string_view part) {
   std::array<std::size_t, 3> numbers{};
   std::size_t count = 0;
@@ -107,7 +107,7 @@ class TriangleList {
                               " corners form no triangle and are ignored");
   }
 
-  /// Every other triangle of a strip is wound the other way.
+  /// Every other triangle of a strip has the opposite winding.
   void strip(GltfPart& part) const {
     for (std::size_t i = 0; i + 2 < indices_.size(); ++i)
       part.triangles.push_back({indices_[i], indices_[i + 1 + i % 2], indices_[i + 2 - i % 2]});
@@ -137,7 +137,7 @@ void check_positions(const GltfModel& gltf, std::uint32_t accessor, const std::v
   }
 }
 
-/// error unless there are as many as positions
+/// error unless their number equals the positions'
 void check_count(const GltfModel& gltf, std::uint32_t accessor, std::size_t count, const GltfPart& part,
                  const char* what) {
   if (count != part.positions.size())
@@ -158,7 +158,7 @@ void read_normals(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPar
   }
 }
 
-/// glTF counts v downwards.
+/// glTF's v increases downwards.
 void read_uvs(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPart& part) {
   const auto found = primitive.attributes.find("TEXCOORD_0");
   if (found == primitive.attributes.end()) return;
@@ -167,7 +167,7 @@ void read_uvs(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPart& p
   for (auto& uv : part.uvs) uv[1] = 1 - uv[1];
 }
 
-/// Around the file's normals; without them there are none (glTF 2.0, 3.7.2.1).
+/// Tangents require the file's normals (glTF 2.0, 3.7.2.1).
 void read_tangents(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPart& part) {
   const auto found = primitive.attributes.find("TANGENT");
   if (found == primitive.attributes.end() || part.normals.empty()) return;

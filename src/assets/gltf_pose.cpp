@@ -89,7 +89,7 @@ std::vector<Transform> joint_matrices(const GltfModel& gltf, std::size_t skin_in
   return matrices;
 }
 
-/// Sums the joints' matrices at each vertex, a set of four joints after the other.
+/// Sums the joints' matrices at each vertex, one set of four joints after the other.
 class SkinBlend {
  public:
   SkinBlend(const GltfModel& gltf, std::vector<Transform> joints, std::size_t vertices)
@@ -121,8 +121,8 @@ class SkinBlend {
     has_first_ = true;
   }
 
-  /// A weighted mean at each vertex; one without weights follows its first joint.
-  /// out   uneven: how many have weights that do not sum to 1
+  /// Weighted mean at each vertex; one without weights follows its first joint.
+  /// out   uneven: number of vertices with weights not adding up to 1
   std::vector<Transform> run(std::size_t& uneven) {
     constexpr double kRounding = .01;  // rounding of weights in bytes
     for (std::size_t i = 0; i < blended_.size(); ++i) {
@@ -176,7 +176,7 @@ std::vector<Transform> blended_joints(const GltfModel& gltf, std::size_t node, c
   return blended;
 }
 
-/// Normals by the inverse transpose. True where most vertices are mirrored.
+/// Transforms normals by the inverse transpose. Returns true if most vertices are mirrored.
 bool skin(const std::vector<Transform>& blended, GltfPart& part) {
   std::size_t mirrored = 0;
   for (std::size_t i = 0; i < blended.size(); ++i) {

@@ -25,7 +25,7 @@ std::size_t image_of(const GltfModel& gltf, std::size_t texture) {
   return image;
 }
 
-/// The file of an image, where it is not in the asset.
+/// File of an image outside the asset.
 NamedFile file_of(const GltfModel& gltf, const GltfRecord& image) {
   const std::string uri = image.text("uri");
   if (uri.empty() || is_data_uri(uri)) return {};
@@ -54,7 +54,7 @@ GltfImage image_at(const GltfModel& gltf, std::size_t index) {
   return {{}, *std::move(data)};
 }
 
-/// error unless it is there and of a kind that glTF itself has
+/// error unless present and in one of glTF's own formats
 void check_image(const GltfModel& gltf, std::size_t index) {
   const GltfImage image = image_at(gltf, index);
   std::string start = image.bytes.substr(0, 8);

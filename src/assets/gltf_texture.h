@@ -9,10 +9,10 @@
 
 namespace opaline {
 
-/// The texture as a scene file has it, laid as KHR_texture_transform says.
-/// in    info: what a material says of it, with an index; mesh_path: how the scene file calls the asset
+/// The texture for a scene file, with KHR_texture_transform applied.
+/// in    info: a material's reference to it, with an index; mesh_path: the asset's name in the scene file
 /// out   warning: of the image's file, see NamedFile
-/// error Error{bad_input} naming the asset and the record: it cannot be carried over, and why; OutsideAsset
+/// error Error{bad_input} naming the asset and the record: not convertible, and why; OutsideAsset
 Json texture_json(const GltfModel& gltf, const GltfRecord& info, const std::string& mesh_path,
                   std::string& warning);
 

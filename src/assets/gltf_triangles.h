@@ -6,7 +6,7 @@
 
 namespace opaline {
 
-/// The part of an asset that is read already, see read_gltf_part.
+/// A part of a loaded asset, see read_gltf_part.
 GltfPart read_gltf_part(const GltfModel& gltf, const std::string& part, MeshUvs uvs = MeshUvs::unread);
 
 }  // namespace opaline

@@ -9,14 +9,14 @@ namespace opaline {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr int kLongerSide = 512;  // longer side of the picture, pixels
+constexpr int kLongerSide = 512;  // longer side of the image, pixels
 
 std::string label_of(const char* kind, const std::string& name, std::size_t index) {
   return name.empty() ? record_name(kind, index)
                       : std::string(kind, std::string_view(kind).size() - 1) + ' ' + in_quotes(name);
 }
 
-/// Cameras and lights look along their node's -z; a node's scale does not count.
+/// Cameras and lights look along their node's -z; a node's scale is ignored.
 Vec3d forward(const Transform& to_world) {
   return -normalized(to_world.z);
 }
@@ -28,8 +28,8 @@ Json picture_size(double aspect_ratio) {
                            : Json{shorter(aspect_ratio), kLongerSide};
 }
 
-/// glTF counts point and spot lights in candela, directional ones in lux, and lengths in metres.
-/// A lux is drawn as 1 W/mm^2: a candela then is 1e6 W/sr, as there are 1e6 mm^2 in a square metre.
+/// glTF measures point and spot lights in candela, directional ones in lux, and lengths in metres. A lux
+/// becomes 1 W/mm^2; a candela then is 1e6 W/sr, as there are 1e6 mm^2 in a square metre.
 constexpr double kIntensityOfCandela = 1e6;
 
 double luminance(const Vec3d& color) {
@@ -82,7 +82,7 @@ class LightTranslator {
     const GltfRecord spot = light_.record("spot");
     double outer = spot.number("outerConeAngle", std::numbers::pi / 4) * kDegrees,
            inner = spot.number("innerConeAngle", 0) * kDegrees;
-    // A hard rim, which glTF does not allow and Blender's exporter writes as it is: the narrowest that fades.
+    // A hard edge, invalid in glTF but written by Blender's exporter, becomes the narrowest valid falloff.
     constexpr double kHardRim = .999, kRounding = 1e-6;
     if (inner > kHardRim * outer && inner <= (1 + kRounding) * outer) inner = kHardRim * outer;
     if (!(outer > 0 && outer <= 90 && inner >= 0 && inner < outer)) {
@@ -94,7 +94,7 @@ class LightTranslator {
     json["inner_angle"] = inner;
   }
 
-  /// At center of a light within the asset as from its surface.
+  /// A light inside the asset shines on the center as from its surface.
   double at_center(const Vec3d& brightness, bool has_place) const {
     if (!has_place) return luminance(brightness);
     const double distance = std::max(length(to_world_.translation - scene_.center), scene_.radius);

@@ -8,12 +8,12 @@
 
 namespace opaline {
 
-/// The first camera that can be used becomes the scene's; what the others are is said.
+/// Makes the first usable camera the scene's, and reports the others.
 void add_camera(const GltfModel& gltf, std::size_t node, const Transform& to_world, AssetScene& scene);
 
-/// The light of KHR_lights_punctual at a node, where it has one.
-/// in    scene: its center and radius are known
-/// error Error{bad_input} at a reference to nothing or a value that is not a brightness
+/// Adds a node's light of KHR_lights_punctual, if any.
+/// in    scene: with its center and radius
+/// error Error{bad_input} at a dangling reference or an invalid brightness
 void add_light(const GltfModel& gltf, std::size_t node, const Transform& to_world, UniqueNames& names,
                AssetScene& scene);
 

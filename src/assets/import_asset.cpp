@@ -46,7 +46,7 @@ std::string summary_of(const AssetScene& scene, bool own_camera, bool own_lights
   return text;
 }
 
-/// Within what a scene file may hold, with room for a camera and lights.
+/// Checks the extent against a scene file's limits, with a margin for a camera and lights.
 void check_extent(const std::string& path, const AssetScene& scene) {
   constexpr double limit = 1e15;
   const double farthest = max_component(component_max(scene.center, -scene.center)) + scene.radius;

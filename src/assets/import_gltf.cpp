@@ -21,7 +21,7 @@ bool is_finite(const Transform& t) {
   return is_finite(t.x) && is_finite(t.y) && is_finite(t.z) && is_finite(t.translation);
 }
 
-/// A node belonging to the scene, with its place in the world; of a mesh that is there several times, which one.
+/// A node of the scene with its transform; for an instanced mesh, the instance.
 struct PlacedNode {
   std::size_t index, instance;
   Transform to_world;
@@ -32,7 +32,7 @@ class NodeWalk {
  public:
   explicit NodeWalk(const GltfModel& gltf) : gltf_(gltf), is_met_(gltf.nodes.size()) {}
 
-  /// Those that show something, in the order of the file, parents first.
+  /// Nodes with content, in the order of the file, parents first.
   std::vector<PlacedNode> run(const std::vector<std::uint32_t>& roots) {
     push(roots, 1);
     std::vector<PlacedNode> placed;
@@ -156,7 +156,7 @@ class GltfImporter {
     return all;
   }
 
-  /// error none: what has no triangles is said once
+  /// Reports a primitive without triangles once.
   bool has_triangles(std::size_t mesh, std::size_t p) const {
     const GltfPrimitive& primitive = gltf_.meshes[mesh].primitives[p];
     return primitive.mode >= kGltfTriangles && primitive.mode <= kGltfTriangleFan &&
@@ -200,7 +200,7 @@ class GltfImporter {
                     is_faceted ? ", faceted: it has no normals (\"normals\": \"smooth\" makes some)" : ""));
   }
 
-  /// Primitives of one node sharing a medium are one body.
+  /// Primitives of one node with the same medium are one body.
   void add_surface(Json& shape, const MaterialUse& use, const PlacedNode& placed, bool has_siblings) {
     const Surface& surface = surface_of(use);
     if (surface.medium.empty()) shape["reflectance"] = triple_json(surface.reflectance);
@@ -247,7 +247,8 @@ class GltfImporter {
     }
   }
 
-  /// The node, or the nearest one above it, whose scale has a zero: "; the scale of node 'arm' is [1, 0, 1]".
+  /// Names the nearest node with a zero in its scale, from this one up: "; the scale of node 'arm' is [1, 0,
+  /// 1]".
   std::string zero_scale_text(std::size_t index) const {
     for (auto at = std::uint32_t(index); at != kNoRecord; at = gltf_.nodes[at].parent) {
       const Transform t = gltf_.nodes[at].to_parent();
@@ -297,7 +298,7 @@ class GltfImporter {
   AssetScene scene_;
   UniqueNames shape_names_, medium_names_, light_names_;
   std::map<std::tuple<std::uint32_t, bool, bool>, Surface>
-      surfaces_;  // by material, and whether there are UVs and tangents
+      surfaces_;  // by material, and presence of UVs and tangents
   std::set<std::size_t> told_meshes_;
   std::vector<PlacedPart> parts_;
 };

@@ -60,7 +60,7 @@ struct ObjOutline {
   bool has_uvs = false, has_colors = false;
   std::vector<Vec3d> vertices;
   std::vector<NamedFiles> libraries;
-  std::vector<std::string> materials;  ///< that have faces, in the order of the file
+  std::vector<std::string> materials;  ///< materials with faces, in the order of the file
 };
 
 ObjOutline read_outline(const std::string& text) {
@@ -70,7 +70,7 @@ ObjOutline read_outline(const std::string& text) {
   for_each_line(text, [&](std::string_view line, std::size_t number) {
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
-      const auto position = three_numbers(line);  // where they are none, the reader of the mesh says so
+      const auto position = three_numbers(line);  // reported by the reader of the mesh
       if (position && max_component(component_max(*position, -*position)) < 1e18)
         outline.vertices.push_back(*position);
       for (int i = 0; i < 3; ++i) next_word(line);
@@ -125,7 +125,7 @@ class ObjImporter {
     std::vector<std::string> unused;  ///< statements without an analogue, each once
   };
 
-  /// One file, whose name may have blanks in it, or several names.
+  /// One file with blanks in its name, or several names.
   void read_libraries(const NamedFiles& library) {
     const auto& [names, line] = library;
     if (const std::string whole = find(names, path_, line, "mtllib"); !whole.empty())
@@ -144,7 +144,7 @@ class ObjImporter {
     scene_.warn(fmt::format("{}:{}", file, line), what);
   }
 
-  /// The file that a line names; empty: there is none.
+  /// File named on a line; empty: missing.
   std::string find(const std::string& name, const std::string& named_in, std::size_t line,
                    const std::string& keyword) {
     const NamedFile file = find_named_file(name, path_, std::filesystem::path(named_in).parent_path());
@@ -152,7 +152,7 @@ class ObjImporter {
     return file.path.string();
   }
 
-  /// A material defined again replaces the earlier one, as in other programs.
+  /// A later definition of a material replaces the earlier one, as in other programs.
   void read_library(const std::string& path) {
     const MtlLibrary library = read_mtl_library(path, read_asset_text(path));
     for (const MtlStatement& statement : library.unassigned)
@@ -209,7 +209,7 @@ class ObjImporter {
     if (!complaint.empty()) warn(material, statement, complaint);
   }
 
-  /// A picture as a scene file has it, laid as its options say; null: there is no such file.
+  /// An image as a scene file's texture, with its options; null: no such file.
   /// out   file: its path
   Json texture_of(const MtlMaterial& material, const MtlStatement& statement, const MtlTexture& texture,
                   std::string& file) {
@@ -225,7 +225,7 @@ class ObjImporter {
     const auto& [scale_u, scale_v] = texture.scale;
     const std::array<double, 2> offset{texture.offset[0], 1 - scale_v - texture.offset[1]};
     if (texture.scale != std::array<double, 2>{1, 1}) json["uv_scale"] = {scale_u, scale_v};
-    if (offset != std::array<double, 2>{0, 0}) json["uv_offset"] = offset;  // the scene counts v downwards
+    if (offset != std::array<double, 2>{0, 0}) json["uv_offset"] = offset;  // v increases downwards
     return json;
   }
 
@@ -258,8 +258,8 @@ class ObjImporter {
     surface.picture = {std::move(json), texture.gain};
   }
 
-  /// The height of white is what -bm says, in the OBJ's own lengths. Some programs write normal maps here, whose mean is
-  /// blue; `norm` always is one.
+  /// The value of -bm is the height of white, in the OBJ's unit. Some programs write normal maps here,
+  /// recognised by their blue mean; `norm` always is one.
   void take_bump(const MtlMaterial& material, const MtlStatement& statement, Surface& surface) {
     const MtlTexture texture = read_mtl_texture(statement.text);
     std::string file;
@@ -302,7 +302,7 @@ class ObjImporter {
     if (surface.picture) {
       Json texture = surface.picture->texture;
       const auto name = texture["texture"].get<std::string>();
-      // Programs that write a picture may leave the colour black; grey stands for none.
+      // Programs may write black as the colour beside an image; grey replaces it.
       const bool has_color = reflectance != Vec3d() && reflectance != kGrey && reflectance != Vec3d(1);
       const double gain = surface.picture->gain;
       if (has_color || gain != 1) texture["scale"] = triple_json((has_color ? reflectance : Vec3d(1)) * gain);

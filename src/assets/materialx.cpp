@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constants and bumps of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body by the colour that
-// comes out and the mean free paths inside, which is how the artist's medium of a scene file does: nothing is inverted.
+// Constants and bumps of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body
+// by its diffuse colour and mean free paths, like the artist's medium of a scene file, so no inversion is
+// necessary.
 #include <fmt/format.h>
 
 #include <array>
@@ -29,7 +30,7 @@ struct SurfaceModel {
       *metalness, *specular_weight, *specular_anisotropy, *normal;
   Vec3d default_color, default_scale;
   double default_roughness;
-  bool has_rotation;  ///< has rotation of the anisotropy, in turns
+  bool has_rotation;  ///< input for the rotation of the anisotropy, in turns
 };
 
 // OpenPBR 1.1; Autodesk Standard Surface 1.0.1.
@@ -94,21 +95,21 @@ class SurfaceReader {
     }
     const NamedFile named = find_named_file(heights.file, file_, std::filesystem::path(file_).parent_path());
     if (!named.warning.empty()) scene_.warn(file_, label_ + ": " + named.warning);
-    // Where there is none, reading the scene says so.
+    // A missing file is reported on reading the scene.
     const std::filesystem::path file =
         named.path.empty() ? std::filesystem::path(file_).parent_path() / heights.file : named.path;
     Json& map = keys["bump_map"] = {{"texture", scene_name_of(file, asset_.path, asset_.mesh_path)},
                                     {"scale", heights.scale}};
     if (heights.tiling != std::array<double, 2>{1, 1}) {
       map["uv_scale"] = heights.tiling;
-      map["uv_offset"] = {0, 1 - heights.tiling[1]};  // tiles are counted from the lower edge
+      map["uv_offset"] = {0, 1 - heights.tiling[1]};  // tile rows start at the lower edge
     }
     scene_.translated.push_back(fmt::format("{}: bump of {} -> bump_map, white {:.4g} mm high", label_,
                                             heights.file, heights.scale * scene_.mm_per_unit));
   }
 
-  /// Add grain of OpenPBR the keys' own meaning. Standard Surface divides and multiplies alpha by the root of the alphas' ratio.
-  /// Returns the roughness beside it.
+  /// Adds anisotropy in OpenPBR's parametrization, the scene's own. Standard Surface divides and multiplies
+  /// alpha by the root of the alphas' ratio. Returns the roughness for it.
   double add_grain(Json& keys) {
     const double roughness = number("specular_roughness", model_.default_roughness, 0, 1);
     const double anisotropy = number(model_.specular_anisotropy, 0, 0, 1),
@@ -167,7 +168,7 @@ class SurfaceReader {
     return node_.find_child_by_attribute("input", "name", name);
   }
 
-  /// The input's numbers; none where it has no value of its own.
+  /// Numbers of an input; none without a value of its own.
   std::vector<double> numbers(const char* name) {
     const pugi::xml_node found = input(name);
     if (!found) return {};
@@ -220,7 +221,7 @@ class SurfaceReader {
     return component_min(component_max(to_rec709(name, triple(name, otherwise)), Vec3d(0)), Vec3d(1));
   }
 
-  /// By the nearest colour space that is said: the input's, the surface's, the file's.
+  /// Converts from the innermost given colour space: the input's, the surface's, the file's.
   Vec3d to_rec709(const char* name, const Vec3d& color) {
     const pugi::xml_node own = input(name);
     std::string space;
@@ -250,7 +251,7 @@ class SurfaceReader {
   std::set<std::string> read_;
 };
 
-/// The surface itself, or that of the material of this name; without a name the first of the file.
+/// The surface itself, or that of the material with this name; without a name the first of the file.
 pugi::xml_node find_surface(const pugi::xml_node& root, const std::string& name) {
   pugi::xml_node material = root.find_child_by_attribute("surfacematerial", "name", name.c_str());
   const pugi::xml_node shader = material.find_child_by_attribute("input", "name", "surfaceshader");
@@ -260,7 +261,7 @@ pugi::xml_node find_surface(const pugi::xml_node& root, const std::string& name)
   });
 }
 
-/// "MaterialX 1.37" of a file whose syntax is older than 1.38: shaders stand inside of materials; else empty.
+/// "MaterialX 1.37" for a file with the syntax before 1.38, with shaders inside materials; otherwise empty.
 std::string old_version(const pugi::xml_node& root) {
   const std::string version = root.attribute("version").value();
   const bool is_old = version.starts_with("1.") && std::atoi(version.c_str() + 2) < 38;

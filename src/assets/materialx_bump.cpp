@@ -14,7 +14,7 @@ Node input_of(const Node& node, const char* name) {
   return node.find_child_by_attribute("input", "name", name);
 }
 
-/// The node that an input or output takes its value from, in the same graph or through another's output.
+/// Node connected to an input or output, in the same graph or through another's output.
 Node source_of(const Node& port) {
   const Node graph = port.name() == std::string_view("output") ? port.parent() : port.parent().parent();
   if (const auto name = port.attribute("nodename"))
@@ -28,7 +28,7 @@ Node source_of(const Node& port) {
   return inner.find_child_by_attribute("name", from.attribute("nodename").value());
 }
 
-/// The numbers of an input's value; false where they are not as many, or it is connected.
+/// Numbers of an input's value; false if their count differs, or if it is connected.
 template <std::size_t count>
 bool read_numbers(const Node& input, std::array<double, count>& numbers) {
   std::string_view text = input.attribute("value").value();

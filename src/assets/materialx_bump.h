@@ -8,15 +8,15 @@
 
 namespace opaline {
 
-/// The picture of heights of a `bump` node.
+/// Height map of a `bump` node.
 struct HeightMap {
-  std::string file;  ///< as the document has it, relative to its folder; empty: there is none
+  std::string file;  ///< as in the document, relative to its folder; empty: none
   double scale = 1;  ///< the height of white, scene units
   std::array<double, 2> tiling{1, 1};
-  std::string problem;  ///< why there is none
+  std::string problem;  ///< reason for an empty file
 };
 
-/// Height map of the bump node that drives a surface's normal, from an image or a tiledimage.
+/// Height map of the bump node connected to a surface's normal, from an image or a tiledimage.
 /// in    normal: an input
 HeightMap height_map(const pugi::xml_node& normal);
 

@@ -28,7 +28,7 @@ bool is_known(const std::string& keyword) {
                              [&](std::string_view known) { return in_lower_case(known) == keyword; });
 }
 
-/// True if the text is this number, whatever else stands behind it.
+/// True if the text begins with this number.
 bool begins_with(std::string_view text, double number) {
   return number_of(next_word(text)) == number;
 }
@@ -38,7 +38,7 @@ bool is_everywhere(std::string_view text, double number) {
   return color.value && color.complaint.empty() && *color.value == Vec3d(number);
 }
 
-/// True for values that leave a diffuse surface unchanged: black highlights, full opacity.
+/// True for values without effect on a diffuse surface: black highlights, full opacity.
 bool has_no_effect(const std::string& keyword, std::string_view text) {
   for (const char* other : {"ka", "ns", "ni", "illum", "sharpness", "pcr", "anisor", "map_ka", "map_aat"})
     if (keyword == other) return true;

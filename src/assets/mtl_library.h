@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Materials of MTL files as lists of statements, and what each statement is about.
+// MTL files as lists of statements, and their meaning.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ namespace opaline {
 /// A line of a material library.
 struct MtlStatement {
   std::size_t line = 0;
-  std::string keyword;  ///< as the file has it
-  std::string text;     ///< behind the keyword, without blanks around it
+  std::string keyword;  ///< as in the file
+  std::string text;     ///< after the keyword, without blanks around it
 };
 
 struct MtlMaterial {
@@ -39,19 +39,20 @@ enum class MtlUse {
   color_map,         ///< map_Kd
   bump,              ///< bump, map_bump
   normal_map,        ///< norm
-  no_effect,         ///< changes nothing: a value that is usual, or one that only other statements need
+  no_effect,         ///< default values, and options of other statements
   without_analogue,  ///< would change the surface
   unknown
 };
 
-/// Upper and lower case are the same, as programs differ in them.
+/// Case-insensitive, as programs differ in it.
 MtlUse use_of(const MtlStatement& statement);
 
 /// " (did you mean 'map_Kd'?)", or nothing.
 std::string mtl_suggestion(const std::string& keyword);
 
-/// A colour between 0 and 1. One number stands for all three.
-/// from  Wavefront, MTL material format 4.2: "the g and b are optional; if only r is specified, g and b equal r"
+/// A colour between 0 and 1. One number applies to all three.
+/// from  Wavefront, MTL material format 4.2: "the g and b are optional; if only r is specified, g and b equal
+///       r"
 struct MtlColor {
   std::optional<Vec3d> value;  ///< none: the text is not a colour
   std::string complaint;       ///< about the text, a verb phrase; empty: none

@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-/// An option of the format and how many words follow it, at most.
+/// An option of the format with its maximum number of words.
 struct Option {
   std::string_view name;
   std::size_t words;
@@ -54,7 +54,7 @@ class StatementReader {
     return found == kOptions.end() ? nullptr : &*found;
   }
 
-  /// Numbers of an option may be fewer: the file's name is then next.
+  /// Options may have fewer numbers, before the file's name.
   void read(const Option& option) {
     std::string text(option.name);
     std::vector<double> numbers;
@@ -71,7 +71,7 @@ class StatementReader {
     if (!apply(option.name, numbers, word)) texture_.not_carried.push_back(text);
   }
 
-  /// False where it cannot be carried over.
+  /// False if not supported.
   bool apply(std::string_view name, const std::vector<double>& numbers, const std::string& word) {
     if (name == "-clamp" || name == "-cc") return word == "off";
     if (name == "-t") return std::ranges::all_of(numbers, [](double n) { return n == 0; });

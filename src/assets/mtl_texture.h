@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A texture statement of an MTL file: options, then a file's name, which may have blanks in it.
+// Texture statement of an MTL file: options, then a file's name, possibly with blanks.
 #pragma once
 
 #include <array>
@@ -10,14 +10,14 @@
 namespace opaline {
 
 struct MtlTexture {
-  std::string name;                      ///< as the file has it
+  std::string name;                      ///< as in the file
   std::array<double, 2> scale{1, 1};     ///< -s: of UVs, v upwards
-  std::array<double, 2> offset{0, 0};    ///< -o: added to them then
+  std::array<double, 2> offset{0, 0};    ///< -o: added after scaling
   double gain = 1, bump = 1;             ///< second number of -mm, and -bm
-  std::vector<std::string> not_carried;  ///< options that change the image and have no counterpart
+  std::vector<std::string> not_carried;  ///< unsupported options that change the image
 };
 
-/// in    text: behind the keyword
+/// in    text: after the keyword
 MtlTexture read_mtl_texture(std::string_view text);
 
 }  // namespace opaline

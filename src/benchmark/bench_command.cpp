@@ -30,9 +30,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kWorse = 1;  // the exit code
+constexpr int kWorse = 1;  // exit code of a regression
 
-/// In the report, or beside the CSV, or nowhere for long.
+/// Folder of the reference: in the report, beside the CSV, or temporary.
 std::string reference_folder(const BenchArguments& arguments, const BenchFolder& report) {
   std::string folder = arguments.reference_dir;
   if (folder.empty())
@@ -68,8 +68,8 @@ std::vector<BenchRow> rows_of(const std::vector<BenchJob>& jobs) {
   std::vector<BenchRow> rows;
   const BenchJob* lambert = nullptr;
   for (const BenchJob& job : jobs) {
-    if (lambert == nullptr || lambert->scene != job.scene) lambert = &job;  // a scene's first rung
-    // A failed rung's earlier rounds are not told.
+    if (lambert == nullptr || lambert->scene != job.scene) lambert = &job;  // first rung of a scene
+    // Earlier rounds of a failed rung are not printed.
     const bool failed = !job.failure.empty();
     rows.push_back(
         summarize(job.scene->id, *job.rung, failed ? std::span<const BenchRun>() : job.runs, lambert->runs));
@@ -103,7 +103,7 @@ std::vector<WatchedRung> read_before(const BenchArguments& arguments) {
   return parse_results(InputFile(arguments.against).read_all(), arguments.against);
 }
 
-/// The page last: what it shows is there then.
+/// Writes the page last, after the files it shows.
 void write_report(const BenchArguments& arguments, const BenchFolder& folder, const BenchReport& report) {
   const std::string csv = to_csv(bench_table(report));
   if (!arguments.csv.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `opaline bench`: what a scene's settings cost, and how far off their pictures are.
+// `opaline bench`: cost and error of a scene's settings.
 #pragma once
 
 #include <string>
@@ -27,10 +27,10 @@ struct BenchArguments {
   Log log;
 };
 
-/// Measures each scene's rungs, prints a table and writes the CSV and the report; the exit code: 0, or 3
-/// where a rung failed, or 1 where one is worse than in earlier results.
-/// error Error{bad_input}: a scene, half or earlier results that cannot be used; Error{run_failed}: the
-///       reference cannot be made, an output not be written; Error{interrupted}: the old outputs stay
+/// Measures each scene's rungs, prints a table and writes the CSV and the report. Returns the exit code: 0, 3
+/// if a rung failed, or 1 if one is worse than in earlier results.
+/// error Error{bad_input}: an unusable scene, half or file of earlier results; Error{run_failed}: the
+///       reference or an output failed; Error{interrupted}: the old outputs remain
 int bench_command(const BenchArguments& arguments);
 
 }  // namespace opaline

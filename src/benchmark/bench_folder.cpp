@@ -31,7 +31,7 @@ std::string text_of(const std::string& path) {
   return fs::is_regular_file(path) ? InputFile(path).read_all() : "";
 }
 
-/// Nothing where the record is missing, damaged or of another run.
+/// Empty if the record is missing, damaged or of another run.
 std::optional<OwnChild> recall(const BenchFolder& folder, const KeptRun& run) {
   const Json record =
       Json::parse(text_of(folder.file("runs/" + run.name + ".json")), nullptr, /*allow_exceptions=*/false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a benchmark's pictures lie, and the runs that need not be done again.
+// Folder of a benchmark's images and finished runs.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace opaline {
 
-/// The folder of a report, with pictures/ and runs/ in it; or a temporary one that goes with this object.
+/// Folder of a report, with pictures/ and runs/ in it, or a temporary one deleted with the object.
 class BenchFolder {
  public:
-  /// in    report: made if it is not there; empty: temporary
-  /// error Error{run_failed}: cannot be made or written
+  /// in    report: created if missing; empty: temporary
+  /// error Error{run_failed}: cannot be created or written
   explicit BenchFolder(const std::string& report);
   ~BenchFolder();
   BenchFolder(const BenchFolder&) = delete;
@@ -28,17 +28,17 @@ class BenchFolder {
   bool temporary_ = false;
 };
 
-/// A render leaving a picture.
+/// A render with an image.
 struct KeptRun {
   std::string name;                    ///< name of its record in runs/
   std::string picture;                 ///< within the folder
-  std::string scene_key;               ///< scene key of what is rendered
-  std::vector<std::string> arguments;  ///< without the picture
+  std::string scene_key;               ///< scene key of the rendered scene
+  std::vector<std::string> arguments;  ///< without the image
 };
 
-/// The run as its record has it, if this very program did it on the same scene with the same arguments and
-/// the picture is there; else a child does it now, and what it said is recorded unless it failed.
-/// out   is_kept: it was not run
+/// Reads a run from its record, if the same executable made it from the same scene with the same arguments
+/// and its image exists. Otherwise runs it in a child process and records the result unless it failed.
+/// out   is_kept: read from the record
 /// error as run_own_child; Error{run_failed}: the record cannot be written
 OwnChild run_or_recall(const BenchFolder& folder, const KeptRun& run, Monitor& monitor, bool& is_kept);
 

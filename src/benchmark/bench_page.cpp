@@ -25,7 +25,7 @@ Json estimate_json(const Estimate& estimate) {
   return {{"kind", kinds[estimate.kind]}, {"value", estimate.value}};
 }
 
-/// The round errors nearest to the target, which is one of them.
+/// Round errors nearest to the target, and the target itself.
 std::vector<double> error_targets(const std::vector<TradePoint>& points) {
   const auto [low, high] = std::ranges::minmax(points, {}, &TradePoint::error);
   std::vector<double> values = round_values(std::min(low.error, kTarget), std::max(high.error, kTarget));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page of `opaline bench`: for each scene error against time, images, tables.
 
-// A figure of results.csv, which is its title.
+// A figure of results.csv, with all digits in its title.
 const measured = (row, column) => {
   const value = report.rows[row][column];
   return value === null ? el("td", {class: "none"}, "–")

@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-/// R, G, B and coverage: what a comparison reads.
+/// R, G, B and coverage, the channels of a comparison.
 Image shown_channels(const Image& image) {
   Image shown = image;
   shown.channels.clear();
@@ -41,8 +41,8 @@ Image image_of(const Layer& layer) {
   return image;
 }
 
-/// Pixels sharing a value of a reference's noise. Random walks are counted on cells, half of which are seen, and
-/// interpolated over about five (the noise of a pixel is 2.3 times less than that of a cell).
+/// Pixels sharing a value of a reference's noise. Random walks are collected on cells, half of them visible,
+/// and interpolated over about five cells.
 double alike_pixels(const std::vector<std::uint8_t>& object, std::size_t cells) {
   constexpr double kSeen = .5, kBlended = 5;
   if (cells == 0) return 1;
@@ -119,7 +119,7 @@ void add_pictures(const BenchFolder& folder, const std::vector<BenchScene>& scen
   }
 }
 
-// The same picture as both halves: a reference without noise.
+// The same image as both halves: a reference without noise.
 std::vector<BudgetRow> budget_rows(const BenchFolder& folder, const std::vector<BudgetJob>& jobs) {
   std::vector<BudgetRow> rows;
   for (const BudgetJob& job : jobs) {

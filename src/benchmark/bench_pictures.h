@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pictures of a benchmark: their errors, and what a report shows of them.
+// Errors of a benchmark's images, and their versions for the report.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace opaline {
 
-/// Only after the last run: large pictures in this process would count as its children's memory. In a
-/// report's folder the EXRs are cut down to what the errors are made of, and each gets a PNG of itself and
-/// one of its error.
-/// in    rows: one a job, in their order
-/// out   subjects: one a scene; each row's error and picture
-/// error Error{run_failed}: a picture cannot be written
+/// Computes errors and report images. Call after the last run: large images in this process would count as
+/// its children's memory. In a report's folder, reduces the EXRs to the compared channels and adds a PNG of
+/// each image and of its error.
+/// in    rows: one per job, in the same order
+/// out   subjects: one per scene; each row's error and image
+/// error Error{run_failed}: an image cannot be written
 void add_pictures(const BenchFolder& folder, const std::vector<BenchScene>& scenes,
                   const std::vector<BenchJob>& jobs, BenchReport& report);
 
-/// Components of the error, over the pixels that show an object.
+/// Components of the error, over the covered pixels.
 std::vector<BudgetRow> budget_rows(const BenchFolder& folder, const std::vector<BudgetJob>& jobs);
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A benchmark's rows as a table to read, and what has changed since an earlier one.
+// Benchmark results as a printed table, and changes since an earlier benchmark.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace opaline {
 
-/// On stdout: a line a row, a head with units above each scene's, failures in full below.
+/// Prints one line per row, a header with units above each scene's, and failures in full below.
 void print_bench(const BenchReport& report);
 
-/// On stdout: a line a change, and what could not be compared.
+/// Prints one line per change, and the rungs without a counterpart.
 void print_regression(const Regression& regression, const std::string& before);
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A benchmark as data: what each run cost, and what the runs of a rung amount to.
+// Benchmark data: cost of single runs, and statistics of a rung's runs.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ inline constexpr std::array<std::string_view, 11> kBenchStages{
 inline constexpr std::size_t kShadingStage = 9;
 static_assert(kBenchStages[kShadingStage] == "shading");  // it and the later ones: again for each frame
 
-/// As the kernel accounts for it. It tells user from system by its ticks: their sum is the exact one.
+/// Kernel accounting. Kernels divide user and system time by ticks; their sum is exact.
 struct Cost {
   double user_seconds = 0, system_seconds = 0, wall_seconds = 0;
   double peak_bytes = 0;  ///< largest resident set; of a stage: of the process up to its end
@@ -64,8 +64,7 @@ struct BenchRow {
   Spread shading_rate, embree_rate;  ///< rays per CPU second, of the whole shading pass and of Embree alone
   /// CPU over the lambert rung's in the same round of the same benchmark, a ratio a round: drift cancels.
   Spread job_ratio, shading_ratio;
-  /// CPU of the stages before the shading, which do not depend on the camera, and of it and the later ones,
-  /// s.
+  /// CPU of the stages before the shading, independent of the camera; and of the shading and later ones, s.
   Spread once_cpu, frame_cpu;
   std::optional<PictureError> error;
   std::string picture;  ///< EXR beside the report, relative to its folder; empty: not kept
@@ -74,7 +73,7 @@ struct BenchRow {
 /// Scene and reference of the rows.
 struct BenchSubject {
   std::string scene;      ///< as in the rows
-  std::string key;        ///< key of what the scene's files and the bench's settings of it hold
+  std::string key;        ///< key of the scene's files and the benchmark's settings
   std::string title;      ///< its name without folders
   std::string reference;  ///< in words
   double half_noise = 0;  ///< half noise of one half of the reference, rms, worst channel
@@ -83,7 +82,7 @@ struct BenchSubject {
   bool is_truth = false;  ///< the reference is random walks, not `direct` on the same model
 };
 
-/// Notes say where and how it was measured: key and value, in the order they are written.
+/// Notes contain place and method of the measurement: key and value, in order.
 struct BenchReport {
   std::vector<std::pair<std::string, std::string>> notes;
   std::vector<BenchSubject> subjects;  ///< in the order of the rows

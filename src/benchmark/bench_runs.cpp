@@ -40,13 +40,13 @@ std::string outcome(const BenchJob& job, bool is_kept) {
   return short_time(job.runs.back().job.wall_seconds) + (is_kept ? " (reused)" : "");
 }
 
-/// Pictures of one scene by their overrides.
+/// Images of one scene by their overrides.
 class PartPictures {
  public:
   PartPictures(const BenchArguments& arguments, const BenchFolder& folder, const BenchScene& scene)
       : arguments_(arguments), folder_(folder), scene_(scene) {}
 
-  /// The EXR within the folder; a failure is told in `failure`.
+  /// The EXR within the folder; a failure is in `failure`.
   std::string render(const BudgetPart& part, const std::vector<std::string>& overrides, Monitor& monitor,
                      std::string& failure) {
     const auto known = done_.find(overrides);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The runs of a benchmark: rounds of all rungs, and the pictures of the error's parts.
+// Runs of a benchmark: rounds of all rungs, and the images of the error's components.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// A rung on its way to a row.
+/// A rung before it becomes a row.
 struct BenchJob {
   const BenchScene* scene;
   const Rung* rung;
@@ -21,7 +21,7 @@ struct BenchJob {
   std::string failure;
 };
 
-/// Two pictures on their way to a part of the error.
+/// Two images before they become a component of the error.
 struct BudgetJob {
   const BenchScene* scene;
   BudgetPart part;
@@ -31,13 +31,13 @@ struct BudgetJob {
 
 std::vector<BenchJob> list_jobs(const std::vector<BenchScene>& scenes);
 
-/// Round by round, so a machine that warms up or is busy for a while is so for all rungs.
-/// out   how many of the runs were recalled from the folder
-/// error as run_or_recall; what fails is in the job
+/// Runs all rungs round by round, so temporary changes of the machine's speed affect all of them.
+/// out   number of runs read from the folder
+/// error as run_or_recall; other failures are in the job
 std::size_t run_jobs(const BenchArguments& arguments, const BenchFolder& folder, std::vector<BenchJob>& jobs,
                      Monitor& monitor);
 
-/// Renders the pictures of each scene's parts of the error, those that are alike once.
+/// Renders the images of each scene's error components, equal ones once.
 /// error as run_jobs
 std::vector<BudgetJob> run_budget(const BenchArguments& arguments, const BenchFolder& folder,
                                   const std::vector<BenchScene>& scenes, Monitor& monitor);

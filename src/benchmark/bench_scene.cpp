@@ -26,8 +26,8 @@ constexpr int kQuickWidth = 128;
 constexpr std::array<const char*, 2> kProfiles{"dipole", "normalized_diffusion"};
 constexpr std::array<const char*, 2> kReferenceSeeds{"101", "102"};
 
-// Random walks end after a time that their noise decides: some ten seconds of CPU a half on a bunny in marble. On fewer
-// cells what they are smoothed over would be seen: of volume_diffusion's error 6.8 % in place of 3.2 % with 2000 cells.
+// Random walks of the reference stop at this noise. Fewer cells would smooth the reference visibly: an error
+// of volume_diffusion would appear larger.
 constexpr std::size_t kWalkedCells = 6000;
 constexpr double kWalkNoise = .2;  // walk noise of a cell
 
@@ -35,7 +35,7 @@ void add_sets(std::vector<std::string>& arguments, const std::vector<std::string
   for (const std::string& text : overrides) arguments.insert(arguments.end(), {"--set", text});
 }
 
-/// The event that a child was run for; its failure is this run's.
+/// The requested event of a child; its failure is this run's.
 Json answer_of(const OwnChild& child, const std::string& event) {
   if (!child.failure.empty()) throw Error(ErrorKind(child.exit_code), {}, 0, 0, child.failure);
   const Json* answer = child.event(event);
@@ -58,7 +58,7 @@ std::string quick_resolution(const Film& film) {
   return fmt::format("film.resolution=[{},{}]", kQuickWidth, height);
 }
 
-/// Checks that a half fits the scene's picture, and returns its seed; its pixels are gone afterwards.
+/// Checks a half against the scene's image size, and returns its seed; frees its pixels.
 std::string check_half(const std::string& path, const BenchScene& scene) {
   const Image image = read_image(path);
   const Film& film = scene.scene.film;
@@ -74,7 +74,7 @@ std::string check_half(const std::string& path, const BenchScene& scene) {
   return "unknown";
 }
 
-/// How a half of the reference is made: overrides, the noise that it is made until, and that in words.
+/// Settings of a reference half: overrides, and its noise threshold as a number and in words.
 struct HalfSettings {
   std::vector<std::string> overrides;
   double until_error;
@@ -102,7 +102,7 @@ std::string told(const BenchReference& reference, const Json& done) {
                      100 * done.value("walk_noise", 0.0), grouped(done.value("walks", std::uint64_t{0})));
 }
 
-/// Renders a half, or goes on with it where it is not yet good enough; returns its file.
+/// Renders a half, or continues one above the noise threshold; returns its file.
 std::string render_half(const BenchArguments& arguments, const std::string& folder, const BenchScene& scene,
                         const std::string& seed, Monitor& monitor) {
   const HalfSettings half_of = half_settings(arguments, scene);
@@ -112,7 +112,7 @@ std::string render_half(const BenchArguments& arguments, const std::string& fold
   const std::string stem = fmt::format("{}/{}-{:.16}-seed{}", folder, fs::path(scene.file).stem().string(),
                                        direct_sums_key(scene.file, overrides, scene.scene), seed);
   const std::string half = stem + ".exr";
-  // By all cores: it is not timed, and its bytes do not depend on them.
+  // On all cores: it is not timed, and its bytes do not depend on them.
   std::vector<std::string> line{"render", scene.file, "--log",    "json",
                                 "-o",     half,       "--resume", stem + ".sums.exr"};
   add_sets(line, overrides);
@@ -126,7 +126,7 @@ std::string render_half(const BenchArguments& arguments, const std::string& fold
   return half;
 }
 
-/// The scene's own seed unless the reference has it: then the first that it has not.
+/// The scene's own seed, or the first one not used by the reference.
 std::uint64_t other_seed(std::uint64_t seed, const std::array<std::string, 2>& taken) {
   const auto is_taken = [&](std::uint64_t s) {
     return std::ranges::find(taken, std::to_string(s)) != taken.end();
@@ -136,7 +136,7 @@ std::uint64_t other_seed(std::uint64_t seed, const std::array<std::string, 2>& t
   return seed;
 }
 
-/// error Error{bad_input} naming the rung: not a setting, or a value that it cannot have
+/// error Error{bad_input} naming the rung: an unknown setting, or an invalid value
 void check_rungs(const BenchArguments& arguments, const BenchScene& scene) {
   for (const Rung& rung : arguments.rungs) {
     std::vector<std::string> overrides = scene.overrides;
@@ -158,9 +158,9 @@ BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& 
   scene.overrides = arguments.overrides;
   scene.overrides.insert(scene.overrides.end(), more.begin(), more.end());
   scene.scene = load_scene(file, scene.overrides);
-  // In front, as the option would be: what the user sets wins.
+  // Before the user's overrides, which win.
   if (arguments.quick) scene.overrides.insert(scene.overrides.begin(), quick_resolution(scene.scene.film));
-  // Halves would be rounded to .05 %.
+  // Half precision would round them to 0.05 %.
   scene.overrides.emplace_back("film.pixel_type=float");
   scene.scene = load_scene(file, scene.overrides);
   scene.name = fs::path(file).stem().string();
@@ -174,7 +174,7 @@ BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& 
   return scene;
 }
 
-/// The scene once more, for the models against random walks: all without light between things, which walks do not know.
+/// The scene for comparing models with random walks, without light between shapes.
 BenchScene open_truth(const BenchArguments& arguments, const std::string& file, Monitor& monitor) {
   BenchScene scene =
       open_bench_scene(arguments, file, {"settings.bounces=0", "settings.reenter=false"}, monitor);
@@ -195,7 +195,7 @@ std::vector<std::string> rung_overrides(const BenchScene& scene, const Rung& run
   std::vector<std::string> overrides = overrides_of(rung, media);
   if (rung.method == "direct") {
     overrides.push_back(fmt::format("settings.seed={}", scene.direct_seed));
-    // Its knob is the number of entry samples, whatever noise the scene wants.
+    // Its knob is the number of entry samples, independent of the scene's noise threshold.
     if (scene.scene.settings.until_error) overrides.emplace_back("settings.until_error=1e-30");
   }
   return overrides;

@@ -18,7 +18,7 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.7g}", value) : std::string();
 }
 
-/// Text of a count; empty for 0, which means not applicable.
+/// Text of a count; empty for 0, not applicable.
 std::string count(double value) {
   return value > 0 ? number(value) : std::string();
 }
@@ -113,7 +113,7 @@ Columns all_columns() {
   return columns;
 }
 
-/// The figures of a part of the error that a reader asks for; in %.
+/// Summary figures of an error component, %.
 std::vector<std::string> budget_cells(const BudgetRow& row) {
   std::vector<std::string> cells{row.scene, row.part.name, row.part.setting};
   if (!row.error) {

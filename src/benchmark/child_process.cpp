@@ -27,9 +27,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kPollMilliseconds = 50;
-constexpr std::chrono::seconds kGrace{5};  // to write its sums down
+constexpr std::chrono::seconds kGrace{5};  // to save its sums
 
-/// In the child, between fork and exec: nothing but system calls.
+/// In the child, between fork and exec: system calls only.
 [[noreturn]] void become_program(char** argv, int output, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);
@@ -71,7 +71,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// Takes what it printed, for a moment at most; false at the end.
+  /// Reads available output, waiting a moment at most; false at the end.
   bool read_some(std::string& text) {
     pollfd ready{output_, POLLIN, 0};
     if (::poll(&ready, 1, kPollMilliseconds) <= 0) return true;
@@ -102,7 +102,7 @@ double seconds(const timeval& t) {
   return double(t.tv_sec) + 1e-6 * double(t.tv_usec);
 }
 
-/// On a terminal, how far the child is: its last event of progress.
+/// Shows the child's last progress event on a terminal.
 class ChildProgress {
  public:
   void show(std::string_view output) {
@@ -122,7 +122,7 @@ class ChildProgress {
   TerminalLine line_;
 };
 
-/// Reads until the end of the child, or until a cancelled one has had its time.
+/// Reads until the child ends, or a cancelled child exceeds its grace period.
 std::string output_of(Process& process, const Monitor& monitor) {
   std::string text;
   bool asked = false;
@@ -142,7 +142,7 @@ std::string output_of(Process& process, const Monitor& monitor) {
   return text;
 }
 
-/// Its own last word, or how it ended without one.
+/// Its last error message, or its exit status without one.
 std::string failure_of(int status, const OwnChild& child, const std::string& last_line) {
   if (status == 0) return {};
   if (const Json* error = child.event("error")) return error->value("message", "");

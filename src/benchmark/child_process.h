@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This very program as a child process, with what it said and what it cost.
+// This executable as a child process, with its events and cost.
 #pragma once
 
 #include <string>
@@ -21,16 +21,16 @@ struct OwnChild {
   const Json* event(const std::string& kind) const;
 };
 
-/// Runs the executable that runs now, even if its file has been replaced, and waits for its end. When the
-/// monitor is cancelled it is asked to stop, killed if it does not, and Error{interrupted} is thrown; it does
-/// not outlive this process either. The kernel counts the memory of the forked parent as the child's first:
-/// call it before large things are loaded.
-/// in    arguments: with "--log json" among them, for events
+/// Runs the current executable, even if its file has been replaced, and waits for its end. Cancelling the
+/// monitor stops the child, by force if necessary, and throws Error{interrupted}; the child also ends with
+/// this process. The kernel counts the forked parent's memory as the child's first, so call before loading
+/// large data.
+/// in    arguments: including "--log json", for events
 /// error Error{run_failed}: no process; Error{interrupted}
 OwnChild run_own_child(const std::vector<std::string>& arguments, Monitor& monitor);
 
 /// Stages of a render, from its event "done".
-/// error Error{run_failed}: a stage that kBenchStages does not know, or no such event
+/// error Error{run_failed}: a stage missing in kBenchStages, or no such event
 BenchRun bench_run(const OwnChild& render);
 
 }  // namespace opaline

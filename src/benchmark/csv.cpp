@@ -7,7 +7,7 @@
 namespace opaline {
 namespace {
 
-/// True if a spreadsheet would take the cell for a formula. Figures are none, whatever their sign.
+/// True if a spreadsheet would read the cell as a formula. Signed numbers are not formulas.
 bool is_formula(std::string_view cell) {
   if (cell.empty() || std::string_view("=+-@\t\r").find(cell[0]) == std::string_view::npos) return false;
   double number = 0;
@@ -15,7 +15,8 @@ bool is_formula(std::string_view cell) {
   return error != std::errc{} || end != cell.data() + cell.size();
 }
 
-/// Such a cell stands behind an apostrophe, and so does one that looks like that already.
+/// True if the cell needs a leading apostrophe: a formula, or a cell that already begins with apostrophes
+/// before one.
 bool needs_apostrophe(std::string_view cell) {
   return is_formula(cell.substr(std::min(cell.find_first_not_of('\''), cell.size())));
 }
@@ -28,7 +29,7 @@ std::string quoted(const std::string& text) {
   return '"' + between + '"';
 }
 
-/// One cell, whatever commas are in it: what stands behind one may look like a formula.
+/// Quotes a note with commas as one cell: the text after a comma might be read as a formula.
 std::string note_line(const std::string& key, const std::string& value) {
   const std::string note = "# " + key + ": " + value;
   return (note.find_first_of(",\"") == std::string::npos ? note : quoted(note)) + '\n';

@@ -10,8 +10,8 @@
 
 namespace opaline {
 
-/// As text: "# key: value" a note, quoted if it has a comma, a line of names, a line of units, a line a row;
-/// cells quoted where they must be (RFC 4180), lines end in \n.
+/// Text format: "# key: value" per note, quoted if it has a comma, a line of names, a line of units, a line
+/// per row; cells quoted where necessary (RFC 4180), lines end in \n.
 struct CsvTable {
   std::vector<std::pair<std::string, std::string>> notes;  ///< no line breaks; no ": " in a key
   std::vector<std::string> names, units;                   ///< a column each
@@ -23,10 +23,10 @@ std::string to_csv(const CsvTable& table);
 /// Raised whenever a column changes its name, unit or meaning, or goes.
 inline constexpr int kBenchSchema = 2;
 
-/// The schema is the first note. Empty cells were not measured; a failed rung's `failure` says why.
+/// The schema is the first note. Empty cells were not measured; a failed rung has the reason in `failure`.
 CsvTable bench_table(const BenchReport& report);
 
-/// The parts of the error, a row each.
+/// Components of the error, one per row.
 CsvTable budget_table(const BenchReport& report);
 
 }  // namespace opaline

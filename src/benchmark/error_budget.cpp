@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kFactor = 16, kMostSamples = 4'000'000;
 constexpr int kMostLightSamples = 65536;
-constexpr int kEvenLight = 1024;  // shadow rays whose noise is small beside interpolation's error
+constexpr int kEvenLight = 1024;  // shadow rays with noise far below the interpolation error
 
 using Overrides = std::vector<std::string>;
 
@@ -19,16 +19,16 @@ Overrides operator+(Overrides a, const Overrides& b) {
   return a;
 }
 
-/// The tree that the scene's pictures come from, without the interpolation of the surface cache.
+/// Tree evaluator of the scene's images, without the interpolation of a surface cache.
 std::string tree_of(EvaluatorKind evaluator) {
   return evaluator == EvaluatorKind::classic ? "classic" : "dual_tree";
 }
 
 }  // namespace
 
-// Samples and near field are compared where the tree's own error is too small to hide them, and samples where
-// as many rays in all go to the lights: more samples would otherwise take noise of the irradiance away too,
-// as interpolating it evens it out.
+// Isolates the components. Samples and near field are compared at a tolerance small enough not to hide them.
+// Samples are compared at an equal total number of shadow rays: otherwise more samples would also average out
+// more noise of the irradiance.
 std::vector<BudgetPart> error_budget(std::size_t planned_samples, const Settings& settings) {
   if (planned_samples == 0) return {};
   const std::size_t most = std::max(std::min(kFactor * planned_samples, kMostSamples), 2 * planned_samples);
@@ -39,7 +39,7 @@ std::vector<BudgetPart> error_budget(std::size_t planned_samples, const Settings
   const Overrides many_rays{fmt::format("settings.light_samples={}", light_samples)};
   const int even = std::max(light_samples, kEvenLight);
   const Overrides even_light{fmt::format("settings.light_samples={}", even)};
-  const Overrides lone{"settings.bounces=0"};  // light between things is no part of either
+  const Overrides lone{"settings.bounces=0"};  // light between shapes belongs to neither
   const Overrides fine{"settings.evaluator=dual_tree", "settings.tolerance=0.001"};
   const Overrides dense = fine + Overrides{"settings.samples=" + many, "settings.max_samples=" + many};
   return {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of the error, each alone: two pictures that differ in one setting.
+// Components of the error, each isolated by two images differing in one setting.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,16 @@
 
 namespace opaline {
 
-/// Both pictures are `hierarchical` unless a part's overrides say otherwise; what is not named is as the scene has it.
+/// Both images use `hierarchical` unless overridden; other settings are the scene's.
 struct BudgetPart {
   std::string name;                    ///< "sampling"
   std::string setting;                 ///< text of the difference
-  std::vector<std::string> here;       ///< overrides of the picture with this part of the error
+  std::vector<std::string> here;       ///< overrides of the image with this component of the error
   std::vector<std::string> converged;  ///< overrides of the converged run
 };
 
-/// A part as measured: the figures of `here` against `converged`, two pictures without noise, or why there
-/// are none.
+/// A measured component: figures of `here` against `converged`, two noise-free images, or the reason for
+/// their absence.
 struct BudgetRow {
   std::string scene;
   BudgetPart part;

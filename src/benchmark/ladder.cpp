@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-/// Rungs that differ in one setting.
+/// Rungs differing in one setting.
 struct Series {
   std::string method, evaluator, knob;
   std::vector<std::string> values, quick_values;
@@ -59,7 +59,7 @@ std::vector<std::string> overrides_of(const Rung& rung, std::span<const std::str
 std::vector<Rung> ladder(const LadderInput& input) {
   std::vector<Rung> rungs;
   for (const Series& series : all_series(input.planned_samples)) {
-    // Without anything translucent there are no samples to count, nor a tree to walk.
+    // Without translucent shapes there are no samples and no tree.
     if (input.planned_samples == 0 && series.method == "hierarchical") continue;
     if (!input.bounces && series.knob == "bounces") continue;
     for (const std::string& value : input.quick ? series.quick_values : series.values)
@@ -71,7 +71,7 @@ std::vector<Rung> ladder(const LadderInput& input) {
 std::vector<Rung> truth_ladder(bool quick) {
   std::vector<Rung> rungs{{"lambert", "", "", ""}, {"hierarchical", "", "", ""}};
   for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind)
-    if (ProfileKind(kind) != ProfileKind::directional_dipole)  // by `direct` alone
+    if (ProfileKind(kind) != ProfileKind::directional_dipole)  // `direct` only
       rungs.push_back({"hierarchical", "", "profile", std::string(kProfileNames[kind]), true});
   for (const char* cells : {"3", "2", "1"})
     if (!quick || cells == std::string_view("2"))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where and with what a benchmark ran.
+// Machine and build of a benchmark.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace opaline {
 /// system, compiler, build.
 std::vector<std::pair<std::string, std::string>> machine_notes();
 
-/// Program hash of the bytes of the executable that runs; hexadecimal.
+/// Hash of the running executable; hexadecimal.
 std::string program_hash();
 
 }  // namespace opaline

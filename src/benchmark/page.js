@@ -107,12 +107,11 @@ const listed = (chart) => Chart.defaults.plugins.legend.labels.generateLabels(ch
     fillStyle: typeof fill === "function" ? pointBorderColor : item.fillStyle};
 });
 
-const drawn = [];  // every chart's function that draws it, called again for the other colour scheme
+const drawn = [];  // functions drawing the charts, repeated for the other colour scheme
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => drawn.forEach((draw) => draw()));
 
-// describe(): {x, y, datasets, legend}, where legend is a position, called for each colour scheme
-// pick(row): a person chose a point
-// group: charts whose series this chart's legend hides and shows
+// describe(): {x, y, datasets, legend}, with the legend's position, called for each colour scheme pick(row):
+// called for a chosen point group: charts sharing hidden and visible series with this chart's legend
 const chart = (title, describe, {pick, group = []} = {}) => {
   const canvas = el("canvas", {tabindex: 0, role: "img", "aria-label": title}), status = el("p", {role: "status", class: "unseen"});
   const isWide = describe().legend;

@@ -30,7 +30,7 @@ PictureError picture_error(const Layer& picture, const Layer& half1, const Layer
   const HalvesComparison estimates = compare_with_halves(picture, half1, half2, object);
   const Layer mean = mean_of(half1, half2);
   const RelativeErrors errors = relative_errors(picture, mean, object);
-  // half1 - mean is half the difference of the halves: as far from 0 as the mean is from the truth.
+  // half1 - mean is half the difference of the halves: as far from 0 as the mean from the true value.
   const RelativeErrors noise = relative_errors(half1, mean, object);
   PictureError result;
   for (std::size_t c = 0; c < 3; ++c) {

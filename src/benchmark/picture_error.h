@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error of a benchmark's picture against two halves of a reference.
+// Error of a benchmark's image against two halves of a reference.
 #pragma once
 
 #include <array>

@@ -10,24 +10,25 @@
 
 namespace opaline {
 
-/// HTML that needs no network, nor any other file but for its links to the tables.
+/// HTML without network access, and without other files except linked tables.
 std::string to_page(const ProfileReport& report);
 
-/// The rows of the three tables below, "models" with their sources, and "channels": the medium, the curve of "fresnel", and
-/// "classical" and "grosjean" around a point source.
+/// The rows of the three tables below, "models" with their sources, and "channels": the medium, the curve of
+/// "fresnel", and "classical" and "grosjean" around a point source.
 nlohmann::ordered_json profile_page_data(const ProfileReport& report);
 
-/// Shares of the transmitted flux: a row a channel, way of entry or model, and face.
+/// Fractions of the transmitted flux: one row per channel, angle of incidence or model, and face.
 CsvTable totals_table(const ProfileReport& report);
-/// R_d by rings: a row a channel, face and ring; walks by both ways of entry, and each model's mean over the ring.
+/// R_d by rings: one row per channel, face and ring; walks for both angles of incidence, and each model's
+/// mean over the ring.
 CsvTable rings_table(const ProfileReport& report);
-/// Albedo by cosine of entry and radiance by cosine of exit: a row a channel and bin.
+/// Albedo by cosine of incidence and radiance by cosine of exit: one row per channel and bin.
 CsvTable angles_table(const ProfileReport& report);
 
 /// "half space", or "slab of 2 mm".
 std::string shape_words(const ProfileReport& report);
 
-/// A share in digits that its error leaves: ".8299 ± .0001"; `between` stands between the two.
+/// A fraction with the digits justified by its error: "0.8299 ± 0.0001"; `between` is the separator.
 std::string walked_text(const WalkedValue& value, const char* between);
 
 }  // namespace opaline

@@ -13,7 +13,7 @@ const totalError = (channel, model, face) => {
   return walked > 0 ? totalOf(channel, model, face).share / walked - 1 : 0;
 };
 
-// Formats a value with the digits that its standard error justifies.
+// Formats a value with the digits justified by its standard error.
 const withError = ({share, share_error: error}) => {
   const digits = error > 0 ? Math.min(7, Math.max(3, 1 - Math.floor(Math.log10(error)))) : 4;
   return `${share.toFixed(digits)} ± ${error.toFixed(digits)}`;
@@ -42,12 +42,12 @@ const answerOf = () => {
     "; nearest shape: ", ...nearest((channel, model) => totalOf(channel, model, "back").shape_difference), ".");
 };
 
-// Rings whose relative error is at most a half.
+// Rings with a relative error of at most a half.
 const isClear = (ring, entry = "diffuse") =>
   ring[`${entry}_profile`] > 0 && ring[`${entry}_profile_error`] < ring[`${entry}_profile`] / 2;
 const place = (ring) => middle(ring.r_low, ring.r_high);
 
-// The distances between which nearly all light leaves.
+// Range of distances containing nearly all light.
 const distancesOf = (rings, total) => {
   const clear = rings.filter((ring) => isClear(ring));
   const first = clear.find((ring) => ring.diffuse_within > 3e-3 * total);

@@ -10,8 +10,7 @@
 namespace opaline {
 namespace {
 
-// About ten seconds of CPU for all runs together; what few collisions leave unused, more walks would not make
-// visible.
+// Collisions of all runs together, some seconds of CPU; media with few collisions do not need more walks.
 constexpr double kCollisions = 8e7;
 constexpr double kFewestWalks = 5000, kMostWalks = 1e6;
 constexpr std::size_t kPilotWalks = 2048;

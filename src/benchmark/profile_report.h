@@ -20,18 +20,18 @@ struct ProfileRequest {
   std::string name;  ///< displayed name of the medium
   PhysicalMedium coefficients;
   double eta = 1.3;
-  double g = 0;                                                ///< that walks scatter with; sigma_s' stays
+  double g = 0;                                                ///< mean cosine of the walks at equal sigma_s'
   double thickness = std::numeric_limits<double>::infinity();  ///< mm; infinite: a half space
-  std::optional<std::size_t> walks;  ///< a channel and way of entry; none: as many as some seconds allow
+  std::optional<std::size_t> walks;  ///< per channel and angle of incidence; none: by a limit on collisions
   std::uint64_t seed = 1;
 };
 
-/// One channel, or all where they are alike.
+/// One channel, or all if they are equal.
 struct ProfiledChannel {
   std::string name;
   HomogeneousMedium medium;
   std::vector<ChannelProfile> models;  ///< as kProfileNames has them
-  SlabWalks diffuse, normal;           ///< by the way of entry
+  SlabWalks diffuse, normal;           ///< by angle of incidence
 };
 
 /// Notes as in BenchReport.
@@ -43,12 +43,13 @@ struct ProfileReport {
   bool is_slab() const { return request.thickness < std::numeric_limits<double>::infinity(); }
 };
 
-/// The same bits for any number of threads: the number of walks follows from collisions counted, not from time.
+/// The same bits for any number of threads: the number of walks follows from collisions counted, not from
+/// time.
 /// error as walk_slab
 ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor);
 
-/// Exitance of a model on one face of the slab: transmission to a point of the far face or, for a model
-/// without two faces (has_far_side) as a point at that distance.
+/// Exitance of a model on one face of the slab. On the far face it is the transmission, or for a model
+/// without two faces (has_far_side) the profile at that distance.
 struct ModelFace {
   const ChannelProfile* profile;
   double height = 0;  ///< thickness for the far face, mm
@@ -58,7 +59,7 @@ struct ModelFace {
   double total() const;
 };
 
-/// Largest difference of the shares, each of its own total, that leave within the same distance.
+/// Largest difference of the cumulative fractions, each over its own total.
 double shape_difference(const ModelFace& model, const WalkedFace& walked);
 
 }  // namespace opaline

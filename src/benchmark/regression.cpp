@@ -7,7 +7,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeast = .05;  // smallest change that counts, relative to the earlier value
+constexpr double kLeast = .05;  // smallest significant change, relative to the earlier value
 constexpr double kStandardErrors = 3;
 
 bool is_other_ratio(const Spread& before, const Spread& now) {

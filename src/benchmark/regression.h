@@ -19,15 +19,15 @@ struct Change {
 };
 
 struct Regression {
-  std::size_t compared = 0;            ///< rungs that both have
-  std::vector<std::string> unmatched;  ///< names of those that only one has
+  std::size_t compared = 0;            ///< rungs in both
+  std::vector<std::string> unmatched;  ///< names of rungs in only one
   std::vector<Change> changes;
 };
 
-/// Rungs match by the key of their scene and their name. A ratio has changed where the ranges of both
-/// benchmarks lie apart by more than half the sum of their widths, and the medians differ by more than 5 %;
-/// an error where its square differs by more than three of the standard errors of both (error_floor), and it
-/// by more than 5 %. Times themselves are not compared: the machines may differ.
+/// Matches rungs by scene key and name. A ratio has changed if the gap between the ranges of both benchmarks
+/// exceeds half the sum of their widths, and the medians differ by more than 5 %; an error if its square
+/// differs by more than three combined standard errors (error_floor), and the error by more than 5 %. Times
+/// are not compared, as machines may differ.
 Regression compare_results(std::span<const WatchedRung> before, std::span<const WatchedRung> now);
 
 }  // namespace opaline

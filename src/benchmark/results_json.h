@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A benchmark as JSON, and what a later one compares of it.
+// Benchmark results as JSON, and the part compared with later ones.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -18,10 +18,11 @@ namespace opaline {
 std::string to_json(const BenchReport& report);
 nlohmann::ordered_json results_json(const BenchReport& report);
 
-/// Rows of a table as objects: numbers where the column has a unit, null where such a cell is empty or not finite.
+/// Rows of a table as objects: numbers where the column has a unit, null where such a cell is empty or not
+/// finite.
 nlohmann::ordered_json rows_json(const CsvTable& table);
 
-/// A rung as far as its cost and error are watched.
+/// Compared data of a rung.
 struct WatchedRung {
   std::string key;  ///< key of its scene: BenchSubject
   std::string title, rung;

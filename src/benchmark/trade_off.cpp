@@ -7,13 +7,13 @@
 namespace opaline {
 namespace {
 
-/// y at x on the line through two points whose axes are logarithmic; their x differ.
+/// Value at x of the line through two points in log-log axes; x0 != x1.
 double on_log_line(double x0, double y0, double x1, double y1, double x) {
   const double t = std::log(x / x0) / std::log(x1 / x0);
   return y0 * std::pow(y1 / y0, t);
 }
 
-/// A point below the noise stands too high: what leans on it is a bound.
+/// Kind of an interpolated estimate. Points below the noise are upper bounds, and so are estimates from them.
 Estimate::Kind between(const TradePoint& a, const TradePoint& b) {
   return a.below_noise || b.below_noise ? Estimate::at_most : Estimate::interpolated;
 }
@@ -23,7 +23,7 @@ std::string series_name(const Rung& rung) {
     return "hierarchical, settings of the scene";
   std::string name = rung.method;
   if (!rung.evaluator.empty()) name += ' ' + rung.evaluator;
-  if (rung.of_media)  // profiles are no steps of one knob
+  if (rung.of_media)  // profiles are not steps of one knob
     name += ' ' + rung.value;
   else if (!rung.knob.empty())
     name += ", by " + rung.knob;
@@ -93,7 +93,7 @@ Estimate error_at_cpu(const TradeSeries& series, double cpu) {
 std::vector<double> round_values(double low, double high) {
   std::vector<double> values;
   if (!(low > 0) || !(high >= low) || !std::isfinite(high)) return values;
-  const double slack = 1e-9;  // a bound that is round itself is within
+  const double slack = 1e-9;  // includes round bounds despite rounding
   for (int decade = int(std::floor(std::log10(low))); decade <= int(std::ceil(std::log10(high))); ++decade)
     for (const double digit : {1.0, 2.0, 5.0})
       if (const double value = digit * std::pow(10.0, decade);

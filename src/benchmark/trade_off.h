@@ -11,8 +11,8 @@
 
 namespace opaline {
 
-/// A measured setting; both > 0. An error below the noise of the reference is replaced by that noise: it is
-/// an upper bound.
+/// A measured setting, both values > 0. An error below the reference's noise is replaced by the noise, as an
+/// upper bound.
 struct TradePoint {
   std::size_t row = 0;  ///< row of the benchmark's rows
   double cpu = 0;       ///< s, of the whole job
@@ -21,15 +21,15 @@ struct TradePoint {
   double fixed_cpu = 0;  ///< CPU time independent of the random values: all but the shading, s
 };
 
-/// Settings that differ in one value, from cheap to expensive.
+/// Settings differing in one value, from cheap to expensive.
 struct TradeSeries {
   std::string name;  ///< "hierarchical dual_tree, by tolerance"
   std::string method;
   std::vector<TradePoint> points;
 };
 
-/// Rows of one scene with an error, in the order in which their series first appear. Without `lambert`,
-/// because its error cannot be reduced.
+/// Rows of one scene with an error, in order of the first appearance of their series. Excludes `lambert`: its
+/// error cannot be reduced.
 std::vector<TradeSeries> trade_series(std::span<const BenchRow> rows, const std::string& scene);
 
 /// Indices of the Pareto-optimal points in cost and error, from cheap to expensive.
@@ -41,14 +41,13 @@ struct Estimate {
   enum Kind {
     none,          ///< outside the measured range
     interpolated,  ///< on the straight line of log CPU and log error between two neighbours
-    extrapolated,  ///< `direct` alone: its error falls with the root of the time, as any mean's of random
-                   ///< values
+    extrapolated,  ///< `direct` only: Monte Carlo error falls with the root of the time
     at_most,       ///< upper bound: the nearest setting is better, or its error is below the noise
   } kind = none;
   double value = 0;
 };
 
-/// CPU time at which the series first reaches an error.
+/// CPU time of the series to reach an error.
 Estimate cpu_at_error(const TradeSeries& series, double error);
 
 /// Error of the series in a CPU time.

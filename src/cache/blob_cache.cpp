@@ -47,7 +47,7 @@ void BlobCache::keep(const char* stage, const StageKey& key, const std::function
   }
 }
 
-// Whoever holds the lock for a moment makes room, too.
+// Waits briefly for the lock: its holder frees memory as well.
 void BlobCache::prune() {
   constexpr int kLooks = 100;  // a second
   int looks = 0;

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Held by who removes entries; the system lets go of it when a process dies.
+/// Lock for removing entries; the system releases it when a process dies.
 class FolderLock {
  public:
   FolderLock(const std::string& folder, const std::function<bool()>& wait)
@@ -53,7 +53,7 @@ class FolderLock {
   bool holds_ = false;
 };
 
-/// Calls use(entry of the folder) for each; entries may vanish meanwhile.
+/// Calls use(entry of the folder) for each; entries may vanish during the loop.
 template <class Use>
 void for_files(const std::string& folder, const Use& use) {
   std::error_code failure;
@@ -111,7 +111,7 @@ std::vector<CacheEntry> prune_cache(const std::string& folder, std::uint64_t mos
   for (const CacheEntry& entry : entries) {
     if (total <= most_bytes) break;
     const std::string path = folder + '/' + entry.file;
-    std::error_code unknown;  // unlink() says why
+    std::error_code unknown;  // reported by unlink()
     if (fs::is_directory(fs::symlink_status(path, unknown))) continue;
     if (::unlink(path.c_str()) != 0 && errno != ENOENT)
       throw run_failed(path, std::string("cannot be removed: ") + std::strerror(errno));

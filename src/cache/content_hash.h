@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// XXH3 over a stream of bytes: some 10 GB/s a core, faster than any disk that the cache may lie on.
+// XXH3 over a stream of bytes: some 10 GB/s per core, faster than any disk of a cache.
 #pragma once
 
 #include <cstddef>

@@ -30,7 +30,7 @@ struct Descriptor {
   }
 };
 
-/// As many bytes as there is room for; false if the file has less.
+/// Fills the buffer; false if the file has fewer bytes.
 bool read_all(int descriptor, std::span<char> bytes) {
   for (std::size_t at = 0; at < bytes.size();) {
     const ssize_t got = ::read(descriptor, bytes.data() + at, bytes.size() - at);
@@ -48,7 +48,7 @@ StageKey hash_of(const std::string& listing, std::string_view payload) {
   return hash.value();
 }
 
-/// An entry's file, and what its header, which was read, states.
+/// An entry's file, and the content of its header.
 struct OpenFile {
   Descriptor file;
   std::uint64_t size = 0;
@@ -136,7 +136,7 @@ bool write_entry(const std::string& folder, const EntryName& name, std::uint64_t
   const std::string path = folder + '/' + file_name(name);
   std::error_code ignored;
   if (std::filesystem::is_symlink(path, ignored))
-    std::filesystem::remove(path, ignored);  // no entry is a link
+    std::filesystem::remove(path, ignored);  // entries are never links
   AtomicFile file(path);
   const Hdf5Turn turn;
   Hdf5Writer writer;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One cache entry as a file: an HDF5 file, for other tools, behind a header that tells whether every byte is
-// as it was written, and where its data sets lie. This program copies them from there and has HDF5 parse
-// nothing: HDF5 trusts what it finds in a file, and what stands in a cache's folder may have been put there
-// by anyone.
+// One cache entry as a file: an HDF5 file for other tools, after a header with checksums and the positions of
+// its data sets. This program copies the data sets directly, without HDF5's parser: HDF5 trusts its input,
+// and anyone may write to a cache's folder.
 #pragma once
 
 #include <cstdint>
@@ -24,29 +23,27 @@ struct EntryName {
 
 /// "samples-0123456789abcdef0123456789abcdef.h5"
 std::string file_name(const EntryName& name);
-/// Nothing for names that no entry has.
+/// Empty for other names.
 std::optional<EntryName> parse_file_name(const std::string& name);
 
 struct NoEntry {};
-/// Why an entry must not be used, to follow its name: "is truncated".
+/// Reason not to use an entry, as a predicate of its name: "is truncated".
 struct BadEntry {
   std::string reason;
 };
 
-/// Checks the whole file before anyone looks into it: the header holds the name, where the data sets lie, and
-/// the length and the hash (XXH3, 128 bits) of the rest, and must match byte by byte. Makes the entry the
-/// most recently used, where the folder may be written.
-/// in    most_bytes: a larger file is bad and not read;
-/// what the key stands for cannot have more
+/// Checks the whole file before any use: the header has the name, the positions of the data sets, and the
+/// length and the hash (XXH3, 128 bits) of the rest, and must match byte by byte. Marks the entry as most
+/// recently used, if the folder is writable.
+/// in    most_bytes: upper bound for results with this key; larger files are rejected unread
 std::variant<BlobReader, NoEntry, BadEntry> open_entry(const std::string& folder, const EntryName& name,
                                                        std::uint64_t most_bytes);
 
-/// Why open_entry would not take the entry, by its own; empty if it would. Takes no memory of the file's
-/// size.
+/// open_entry's reason not to use the entry, from its own header; empty: usable. Memory is independent of the
+/// file's size.
 std::string check_entry(const std::string& folder, const EntryName& name);
 
-/// Writes an entry beside its name and renames it; false, and nothing is written, if it is larger than
-/// most_bytes.
+/// Writes an entry to a temporary file and renames it. Returns false, writing nothing, above most_bytes.
 /// error Error{run_failed} naming the file: disk full, folder not writable
 bool write_entry(const std::string& folder, const EntryName& name, std::uint64_t most_bytes,
                  const std::function<void(BlobWriter&)>& fill);

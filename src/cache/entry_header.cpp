@@ -9,8 +9,8 @@
 namespace opaline {
 namespace {
 
-// Raised when the header changes, or the members of a struct that an entry holds; stages have versions of
-// their own, in their keys.
+// Raised on changes of the header, or of the members of a struct in an entry. Stages have versions of their
+// own, in their keys.
 constexpr int kFormat = 3;
 constexpr std::string_view kMagic = "opaline cache entry, format ";
 constexpr std::string_view kPayload = "payload ";
@@ -23,7 +23,7 @@ std::string text_of(const EntryHeader& header) {
   return {header.data(), strnlen(header.data(), header.size())};
 }
 
-/// Reads a whole number and what must follow it; false if either is not there.
+/// Reads an integer and the text expected after it; false if either is missing.
 bool take_number(std::string_view& text, std::string_view behind, std::uint64_t& value) {
   const auto [rest, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failure != std::errc{}) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The text in front of a cache entry, which HDF5 leaves alone.
+// Text header of a cache entry, in HDF5's user block.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ namespace opaline {
 
 using EntryHeader = std::array<char, kUserBlock>;
 
-/// One line a data set.
+/// One line per data set.
 std::string listing_of(const std::vector<BlobPlace>& sets);
 
-/// hash: of the listing and, behind it, the payload, which is all after the header
+/// hash: of the listing followed by the payload, everything after the header
 std::string header_text(const EntryName& name, const std::string& listing, std::uint64_t payload,
                         const StageKey& hash);
 /// True if the header is this text and zeros after it.
@@ -30,14 +30,13 @@ struct StatedEntry {
   std::string listing;
   std::uint64_t payload = 0;
 };
-/// Nothing for a header that this program would not have written for an entry of this name.
+/// Empty for a header not written by this program for an entry of this name.
 std::optional<StatedEntry> read_header(const EntryHeader& header, const EntryName& name);
 
-/// The data sets of a listing; nothing if a line is no such line, or a set does not lie behind the header
-/// within file_bytes.
+/// Data sets of a listing; empty if a line is malformed, or a set is outside the payload of file_bytes.
 std::optional<std::vector<BlobPlace>> read_listing(const std::string& listing, std::uint64_t file_bytes);
 
-/// Reason not to use an entry, from its header; it follows the name: "is truncated".
+/// Reason not to use an entry, from its header, as a predicate of its name: "is truncated".
 std::string reason_of(const EntryHeader& header, std::uint64_t payload);
 
 }  // namespace opaline

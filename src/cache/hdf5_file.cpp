@@ -15,10 +15,10 @@ Hdf5Handle create_in_memory() {
   return {H5Fcreate("cache entry", H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose};
 }
 
-/// In one piece, so whoever knows where it begins can copy it.
+/// Contiguous, for copying from its offset.
 Hdf5Handle set_properties() {
   Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(properties.id(), false);  // the same input gives the same bytes
+  H5Pset_obj_track_times(properties.id(), false);  // reproducible bytes
   H5Pset_layout(properties.id(), H5D_CONTIGUOUS);
   return properties;
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HDF5 as far as cache entries need it: one-dimensional data sets of structs, written so that reading them
-// back takes no HDF5.
+// HDF5 output for cache entries: one-dimensional data sets of structs, readable without HDF5.
 #pragma once
 
 #include <hdf5.h>
@@ -15,14 +14,14 @@
 
 namespace opaline {
 
-/// A number of HDF5's for something open, closed with it.
+/// Identifier of an open HDF5 object, closed with it.
 class Hdf5Handle {
  public:
   Hdf5Handle(hid_t id, herr_t (*closer)(hid_t)) : id_(id), close_(closer) {}
   Hdf5Handle(Hdf5Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Hdf5Handle& operator=(Hdf5Handle&&) = delete;
   ~Hdf5Handle() { close(); }
-  /// False if what was still to be written could not be.
+  /// False if pending data could not be written.
   bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
   hid_t id() const { return id_; }
 
@@ -31,8 +30,7 @@ class Hdf5Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// HDF5 has one state for the whole process: while this lives no other thread is inside it by way of the
-/// cache, and it prints nothing.
+/// Lock and silent mode of HDF5 for this lifetime: HDF5 has one state for the whole process.
 class Hdf5Turn {
  public:
   Hdf5Turn();
@@ -46,16 +44,16 @@ class Hdf5Turn {
   void* data_ = nullptr;
 };
 
-/// Bytes in front of the file that HDF5 leaves alone.
+/// Bytes before HDF5's data, ignored by HDF5.
 inline constexpr std::size_t kUserBlock = 1024;
 
-/// A file made in memory: HDF5 (1.10) cannot let go of one whose disk is full. After the first
-/// failure what follows does nothing.
+/// A file in memory, as HDF5 (1.10) cannot close one on a full disk. No effect after the first failure.
 class Hdf5Writer final : public BlobWriter {
  public:
   Hdf5Writer();
 
-  /// The whole file, kUserBlock bytes of nothing in front; empty after a failure. Valid until the next put.
+  /// The whole file, with kUserBlock zero bytes at the front; empty after a failure. Valid until the next
+  /// put.
   std::string_view bytes();
   /// Arrays in the order of writing.
   const std::vector<BlobPlace>& arrays() const { return arrays_; }

@@ -31,7 +31,7 @@
 namespace opaline {
 namespace {
 
-/// A picture in place of all lights, its values as they are.
+/// An environment map replacing all lights, with its values unchanged.
 std::vector<std::string> environment_overrides(const std::string& picture) {
   const nlohmann::json light{{"type", "environment"},
                              {"name", "environment"},
@@ -70,7 +70,7 @@ Error unknown_format(const std::string& path) {
   return usage_error("unknown output format", "a name that ends in .exr or .png", "'" + path + "'");
 }
 
-/// The one name of a file, however it is written: also of one that is not there yet.
+/// Canonical path of a file, existing or not.
 std::string whole_path(const std::string& path) {
   std::error_code unknown;
   const std::filesystem::path whole =
@@ -100,7 +100,7 @@ void check_outputs(const RenderArguments& render) {
   }
 }
 
-/// error Error{bad_input}: layers that no output would hold
+/// error Error{bad_input}: layers without an output to store them
 void check_layers_have_a_file(const RenderArguments& render, const std::string& asked) {
   const bool has_exr = std::ranges::any_of(
       render.outputs, [](const std::string& path) { return output_format(path) == OutputFormat::exr; });
@@ -156,7 +156,7 @@ BenchArguments checked(BenchArguments bench, const Options& options) {
   return bench;
 }
 
-/// Help and version are exceptions of CLI11 too.
+/// CLI11 reports help and version as exceptions, too.
 ShowText shown_text(CLI::App& app, const CLI::ParseError& request) {
   std::ostringstream out, error;
   app.exit(request, out, error);
@@ -165,7 +165,7 @@ ShowText shown_text(CLI::App& app, const CLI::ParseError& request) {
   return {text};
 }
 
-/// The command that was called, of a command where it has some: "cache ls".
+/// The called command, or its subcommand: "cache ls".
 const CLI::App& called(const CLI::App& app) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   return chosen.empty() ? app : called(*chosen.front());
@@ -197,7 +197,7 @@ Error unknown_command(const CLI::App& parent, const std::string& name) {
                      near.empty() ? "one of " + join(names) : "");
 }
 
-/// How the command is given a value of the scene that is called almost like this option: "--spp N", or by --set.
+/// Similar options or keys for setting a scene value on this command: "--spp N", or --set.
 std::vector<std::string> ways_to_set(const CLI::App& command, std::string key) {
   std::vector<std::string> ways;
   if (command.get_option_no_throw("--set") == nullptr) return ways;
@@ -227,7 +227,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
 Error unknown_option(const CLI::App& command, const std::string& text) {
   const std::string name = text.substr(0, text.find('='));
   const std::vector<std::string> names = option_names(command);
-  // A beginning stands for its words, and a letter that is none for those beginning with it.
+  // A prefix matches full names; an unknown letter matches names beginning with it.
   const bool is_letter = name.size() == 2;
   const std::string beginning = is_letter ? '-' + name : name;
   std::vector<std::string> meant = is_letter ? std::vector<std::string>{} : ways_to_set(command, name);
@@ -241,7 +241,8 @@ Error unknown_option(const CLI::App& command, const std::string& text) {
   return usage_error("unknown option '" + printable(name) + "'" + near + hint(command));
 }
 
-/// CLI11 tells of what is missing before it tells of what it does not know, which may be the same misspelt.
+/// Reports an unknown option, possibly a misspelt required one, before a missing one; CLI11's order is the
+/// reverse.
 Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   const CLI::App& command = called(app);
   const std::vector<std::string> extras = command.remaining();
@@ -259,7 +260,7 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   return usage_error("unexpected argument '" + printable(extras.front()) + "'" + hint(command));
 }
 
-/// The words behind the program's name; "help render" is "render --help".
+/// Arguments after the program's name; "help render" becomes "render --help".
 std::vector<std::string> words_of(const CLI::App& app, int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.empty() || words.front() != "help") return words;
@@ -286,7 +287,7 @@ struct Parsed {
   ImportArguments import;
   ViewArguments view;
   Options options;
-  std::string program, words;  ///< as it was called, and the words behind that, for a shell
+  std::string program, words;  ///< program as called, and the arguments after it, quoted for a shell
 };
 
 void add_commands(CLI::App& app, Parsed& parsed) {
@@ -370,7 +371,7 @@ Command parse_arguments(int argc, const char* const* argv) {
   app.get_formatter()->column_width(34);
   app.set_version_flag("--version", "opaline " OPALINE_VERSION, "print the version");
   app.set_help_flag("-h,--help", "print this help");
-  app.require_subcommand(0, 1);  // none at all is answered below: CLI11 would hide a misspelt one behind it
+  app.require_subcommand(0, 1);  // a missing command is handled below: CLI11 would hide a misspelt one
   app.footer(kExamples);
   Parsed parsed;
   add_commands(app, parsed);

@@ -18,28 +18,28 @@
 namespace opaline {
 
 struct RenderArguments {
-  std::string program;       ///< as it was called
-  std::string command_line;  ///< all of it, for a shell
+  std::string program;       ///< as called
+  std::string command_line;  ///< complete, for a shell
   std::string scene;
-  /// For load_scene: what the short options mean, in a fixed order, then every --set in the order given.
+  /// For load_scene: the values of short options in a fixed order, then every --set in the given order.
   std::vector<std::string> overrides;
   std::vector<std::string> outputs;        ///< at least one; .exr or .png, no two alike
   LayerChoice layers{false, {"diffuse"}};  ///< layers of the EXR files, beside R, G, B and A
   std::string samples_ply;                 ///< empty: none
-  std::string resume;                      ///< file of a direct rendering's sums to go on from; empty: none
+  std::string resume;                      ///< sums of an earlier `direct` render, to continue; empty: none
   std::string cache;                       ///< folder of stage results; empty: none
   std::uint64_t cache_bytes = BlobCache::kDefaultBytes;
-  std::vector<int> frames;  ///< empty: one picture; else outputs have a place for the frame's number
+  std::vector<int> frames;  ///< empty: one image; otherwise output names contain ## for the number
   int threads = 0;          ///< 0: one for each core
   bool timings_in_metadata = false;
-  std::optional<double> target_error;  ///< settings are chosen for it; relative, > 0
-  std::optional<double> time_budget;   ///< settings are chosen for it; CPU of the whole process, s, > 0
-  bool verify = false;                 ///< measure the error of the picture
+  std::optional<double> target_error;  ///< chooses settings by error; relative, > 0
+  std::optional<double> time_budget;   ///< chooses settings by CPU time of the whole process, s, > 0
+  bool verify = false;                 ///< measures the error of the image
   bool gives_entry_samples = false, gives_until_error = false;  ///< the options, not --set
   Log log;
 };
 
-/// The samples, light and trees of frames, into a cache.
+/// Precomputes samples, light and trees of frames into a cache.
 struct PrecomputeArguments {
   std::string scene;
   std::vector<std::string> overrides;
@@ -50,12 +50,12 @@ struct PrecomputeArguments {
   Log log;
 };
 
-/// An asset of another program, to be written as a scene file.
+/// Converts an asset of another program into a scene file.
 struct ImportArguments {
   std::string asset;
-  std::string scene;       ///< to write
-  std::string material;    ///< MaterialX, in place of the asset's materials; empty: these
-  bool overwrite = false;  ///< a scene that is there and says something else
+  std::string scene;       ///< output
+  std::string material;    ///< MaterialX, replacing the asset's materials; empty: none
+  bool overwrite = false;  ///< replaces an existing scene with other contents
   Log log;
 };
 
@@ -75,10 +75,10 @@ struct CompareArguments {
   Log log;
 };
 
-/// A medium's radial profiles beside random walks.
+/// Compares a medium's radial profiles with random walks.
 struct ProfileArguments {
-  std::string medium;               ///< a preset's name, or a JSON object as a scene's media have
-  std::optional<double> eta, g;     ///< in place of the medium's
+  std::string medium;               ///< preset name, or a JSON object as in a scene's media
+  std::optional<double> eta, g;     ///< replace the medium's
   std::optional<double> thickness;  ///< mm; none: a half space
   std::optional<std::uint64_t> walks;
   std::uint64_t seed = 1;
@@ -88,14 +88,14 @@ struct ProfileArguments {
   Log log;
 };
 
-/// A scene on a page.
+/// Serves a scene as a page.
 struct ViewArguments {
-  std::string program;  ///< as it was called
+  std::string program;  ///< as called
   std::string scene;
   std::vector<std::string> overrides;
-  std::vector<int> frames;  ///< empty: those that the scene has keys for
+  std::vector<int> frames;  ///< empty: the frames of the scene's keys
   ViewOptions options;
-  bool opens_browser = true;  ///< where there is a desktop
+  bool opens_browser = true;  ///< on a desktop
   int threads = 0;            ///< 0: one for each core
   Log log;
 };
@@ -120,13 +120,13 @@ using Command =
 
 enum class OutputFormat { exr, png, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case
-/// error Error{bad_input}: an unknown option, a value that is not one, an output that is neither EXR nor PNG
+/// error Error{bad_input}: an unknown option, an invalid value, or an output other than EXR or PNG
 Command parse_arguments(int argc, const char* const* argv);
 
-/// True if the words ask for a log of JSON, whatever else is wrong with them.
+/// True if the arguments request a JSON log, even if others are invalid.
 bool asks_for_json(int argc, const char* const* argv);
 
-/// A failure whose place is "--set KEY=VALUE", where the command line has an option in its stead: its place is the option.
+/// Moves an error from "--set KEY=VALUE" to the equivalent option, if the command line has it.
 Error placed_at_option(const Error& failure, int argc, const char* const* argv);
 
 }  // namespace opaline

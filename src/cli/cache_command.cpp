@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-/// An entry and what is wrong with it, if that was asked for.
+/// An entry and its defect, if checked.
 struct Checked {
   CacheEntry entry;
   std::string problem;

@@ -28,8 +28,7 @@ std::string plain_text(std::string_view markdown) {
   return text;
 }
 
-/// An option that stands for a key of film or settings, with its documentation and, for a whole number,
-/// range.
+/// Adds an option for a key of film or settings, with its documentation and the range of whole numbers.
 template <class T>
 CLI::Option* add_key(CLI::App& app, T& value, std::string_view path) {
   const std::size_t dot = path.find('.');

@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-/// Raw texts of options that need conversion.
+/// Raw texts of options before conversion.
 struct Options {
   std::string method, evaluator, resolution, crop, environment, view;
   std::string until_error, target_error;
@@ -31,9 +31,9 @@ struct Options {
   std::string layers;
 };
 
-/// The option standing for a key of a scene: "film.crop" -> "--crop"; empty where none does.
+/// Option for a key of a scene: "film.crop" -> "--crop"; empty if there is none.
 std::string_view option_of_key(std::string_view key);
-/// The other way: "--crop" -> "film.crop"; empty where it stands for none.
+/// Key of an option: "--crop" -> "film.crop"; empty if there is none.
 std::string_view key_of_option(std::string_view option);
 
 void add_common_options(CLI::App& app, std::string& scene, Options& options);
@@ -47,7 +47,7 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options);
 void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& options);
 void add_cache_commands(CLI::App& app, CacheArguments& cache, Options& options);
 
-/// Completion script for bash: commands, the options of each, and the values of options that are choices.
+/// Completion script for bash: commands, their options, and the values of choices.
 std::string bash_completion(const CLI::App& app);
 
 }  // namespace opaline

@@ -188,7 +188,7 @@ bool is_png(const std::string& path) {
   return output_format(path) == OutputFormat::png;
 }
 
-/// A PNG does not say what it is a crop of.
+/// PNG files do not store their crop.
 void check_comparable(const Picture& picture, const Picture& reference) {
   const auto size = [](const Image& i) { return fmt::format("{} x {} pixels", i.width, i.height); };
   const auto crop = [](const Image& i) {
@@ -208,7 +208,7 @@ void check_comparable(const Picture& picture, const Picture& reference) {
                    fmt::format("{}", fmt::join(picture.layer.names, " ")));
 }
 
-/// The pictures of one run: the one under test, then the reference or its halves.
+/// Images of one run: the tested one, then the reference or its halves.
 std::vector<Picture> load_all(const CompareArguments& arguments) {
   std::vector<std::string> paths{arguments.picture};
   if (arguments.halves.empty())
@@ -228,7 +228,7 @@ std::vector<Picture> load_all(const CompareArguments& arguments) {
   return pictures;
 }
 
-/// Pixels that show an object in any of the references.
+/// Pixels covered in any of the references.
 std::vector<std::uint8_t> object_of(const std::vector<Picture>& pictures) {
   std::vector<std::uint8_t> object = pictures[1].object;
   for (const Picture& reference : pictures)
@@ -315,7 +315,7 @@ void write_error_picture(const std::string& path, const RelativeErrors& errors, 
   write_exr(path, image, /*half=*/false);
 }
 
-/// The reference's defects must not pass for a small error.
+/// Rejects defects of the reference, which could appear as a small error.
 void check_values(const CompareReport& report, const Picture& reference) {
   if (!report.failures.empty()) return;
   for (std::size_t c = 0; c < report.channels.size(); ++c)
@@ -326,7 +326,7 @@ void check_values(const CompareReport& report, const Picture& reference) {
 }  // namespace
 
 int compare_command(const CompareArguments& arguments) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader leaving must not cost the error picture
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not prevent the error image
   const std::vector<Picture> pictures = load_all(arguments);
   const Layer& layer = pictures[0].layer;
   const std::vector<std::uint8_t> object = object_of(pictures);

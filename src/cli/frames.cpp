@@ -140,7 +140,7 @@ RenderArguments arguments_of_frame(const RenderArguments& arguments, int frame) 
 bool is_rendered(const RenderArguments& arguments, const std::string& hash, int frame) {
   std::vector<std::string> others = arguments.outputs;
   if (!arguments.samples_ply.empty()) others.push_back(arguments.samples_ply);
-  std::error_code unknown;  // writing says so
+  std::error_code unknown;  // reported on writing
   for (const std::string& path : others)
     if (!std::filesystem::exists(path, unknown)) return false;
   for (const std::string& path : arguments.outputs) {
@@ -149,7 +149,7 @@ bool is_rendered(const RenderArguments& arguments, const std::string& hash, int 
       for (const auto& entry : frame_metadata(arguments, hash, frame))
         if (std::ranges::find(stated, entry) == stated.end()) return false;
     } catch (const Error&) {
-      return false;  // no picture: to be written over
+      return false;  // not an image: overwritten
     }
   }
   return true;

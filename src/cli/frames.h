@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One frame after the other; one that fails does not stop the others.
+// Rendering of several frames; a failing frame does not stop the others.
 #pragma once
 
 #include <functional>
@@ -18,27 +18,23 @@ std::vector<int> parse_frames(const std::string& text);
 /// Inverse of parse_frames.
 std::string frames_text(const std::vector<int>& frames);
 
-/// Calls work(frame) for each, which says whether it rendered the frame or found it there; what goes wrong
-/// with a frame is printed, naming it, and the others go on. `so_far` is kept up to date. At the end a line
-/// says what became of them all.
-/// error Error{run_failed} at the end, naming the frames that failed;
-/// Error{interrupted} at once
+/// Calls work(frame) for each frame; it returns true if it rendered the frame, false if its images existed.
+/// Prints errors with the frame number and continues. Updates `so_far`, and prints a summary at the end.
+/// error Error{run_failed} at the end, naming the failed frames; Error{interrupted} at once
 void for_frames(const Log& log, const std::vector<int>& frames, FramesSoFar& so_far,
                 const std::function<bool(int)>& work);
 
 /// Gives the session the scene of the reference frame, if its method has samples.
 void anchor_session(Session& session, const std::string& scene, const std::vector<std::string>& overrides);
 
-/// Hash of all inputs of a frame's image but the program: as scene_hash, with the reference frame's
-/// meshes.
+/// Hash of all inputs of a frame's image but the program: as scene_hash, with the reference frame's meshes.
 std::string frame_hash(const std::string& path, const std::vector<std::string>& overrides,
                        const Scene& scene);
 
 /// The command's arguments with the frame's number in the names of its files.
 RenderArguments arguments_of_frame(const RenderArguments& arguments, int frame);
 
-/// True if all the outputs are there and each picture says that this frame was made by this version from this
-/// hash with this command.
+/// True if all outputs exist with metadata of this frame, version, hash and command.
 bool is_rendered(const RenderArguments& arguments, const std::string& hash, int frame);
 
 }  // namespace opaline

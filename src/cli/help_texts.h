@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notes that --help prints below the options.
+// Notes printed by --help below the options.
 #pragma once
 
 namespace opaline {

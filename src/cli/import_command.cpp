@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// As the scene file calls it: relative to its folder, but for another disk's.
+/// Path for the scene file: relative to its folder, unless on another drive.
 std::string path_from(const std::string& scene, const std::string& asset) {
   const fs::path folder = fs::absolute(scene).parent_path();
   std::error_code error;

@@ -92,8 +92,8 @@ opaline::Log log_of(const opaline::Command& command) {
       command);
 }
 
-/// A log, of which nobody wanted to know: the program was started without standard output, and what it makes is in files or
-/// on a page.
+/// True if the log has no receiver: the program was started without standard output, and its results are
+/// files or a page.
 bool is_unwanted_log(const opaline::Command& command) {
   const bool is_log = std::holds_alternative<opaline::RenderArguments>(command) ||
                       std::holds_alternative<opaline::PrecomputeArguments>(command) ||

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 Json settings_in_use(const Scene& scene, const World& world, std::span<const Body> translucent) {
   Json json = Json::parse(settings_json(scene));
   for (const char* asked : {"samples", "sample_spacing"})
-    json.erase(asked);  // the groups say what came of it
+    json.erase(asked);  // the bodies contain the resulting values
   for (const Body& group : translucent) {
     const BodyModel& model = group.plan.model;
     json["groups"].push_back({{"name", group.plan.name},
@@ -32,7 +32,7 @@ Json settings_in_use(const Scene& scene, const World& world, std::span<const Bod
   return json;
 }
 
-/// A name beginning like an option would be taken for one.
+/// Quotes names beginning like an option.
 std::string quoted_path(const std::string& path) {
   return shell_quoted(path.starts_with('-') ? "./" + path : path);
 }
@@ -56,7 +56,7 @@ std::string shell_quoted(const std::string& argument) {
 
 namespace {
 
-/// The option that asks for the layers; empty for those that are written unasked.
+/// Option selecting the layers; empty for the default ones.
 std::string layers_text(const RenderArguments& arguments) {
   const LayerChoice& layers = arguments.layers;
   if (!layers.all && layers.names == RenderArguments{}.layers.names) return {};

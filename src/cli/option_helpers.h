@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options that several commands have.
+// Options of several commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// CLI11 would take everything after `-o a.exr` for more outputs: one value an option, as often as wanted.
+/// CLI11 would read everything after `-o a.exr` as further outputs: takes one value per option, repeatable.
 template <class T>
 CLI::Option* add_repeatable(CLI::App& app, const std::string& names, std::vector<T>& values,
                             const std::string& help) {
@@ -24,7 +24,7 @@ inline CLI::Option* add_size(CLI::App& app, const std::string& name, std::uint64
   return app.add_option(name, bytes, help)->transform(bytes_of())->type_name("SIZE");
 }
 
-/// Option of the commands that read assets.
+/// Option of commands reading assets.
 inline void add_allow_outside(CLI::App& app) {
   app.add_flag_callback(
       "--allow-outside", allow_files_outside_assets,

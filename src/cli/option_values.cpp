@@ -27,7 +27,7 @@ constexpr std::span kLayers = std::span(kLayerWords).first(12);
 
 constexpr std::uint64_t kMostPixel = 65536;
 
-/// "640x480" -> "[640,480]"; empty if it is not `count` whole numbers from `least` to kMostPixel with the
+/// "640x480" -> "[640,480]"; empty unless it has `count` whole numbers from `least` to kMostPixel, with the
 /// separator between them.
 std::string json_list(std::string_view text, char separator, std::size_t count, std::uint64_t least) {
   std::vector<std::uint64_t> numbers;
@@ -45,7 +45,7 @@ std::string json_list(std::string_view text, char separator, std::size_t count, 
   return fmt::format("[{}]", fmt::join(numbers, ","));
 }
 
-/// is_good(text): whether it is what was expected.
+/// is_good(text): true for a valid text.
 template <class IsGood>
 CLI::Validator check(const char* expected, const IsGood& is_good) {
   return CLI::Validator(
@@ -71,7 +71,7 @@ CLI::Validator share_where(const char* such_as, const IsGood& is_good) {
       {});
 }
 
-/// True if CLI11 made a number of text and unit. What it would say tells of the unit alone.
+/// True if CLI11 converts text and unit to a number. Hides its message, which mentions the unit only.
 bool converts(const CLI::Validator& conversion, std::string& text) {
   try {
     return conversion(text).empty();
@@ -166,7 +166,7 @@ CLI::Validator bytes_of() {
   return CLI::Validator(
       [bytes](std::string& text) {
         std::string number = text;
-        // CLI11 would let one below 0 wrap; and who writes 5 means GB.
+        // CLI11 would let a negative value wrap; and "5" usually means GB.
         const bool has_unit = text == "0" || (!text.empty() && (text.back() < '0' || text.back() > '9'));
         if (text.find('-') != std::string::npos || !has_unit || !converts(bytes, number))
           return "expected a size such as 500MB or 8GB, got " + text;

@@ -18,12 +18,12 @@ inline constexpr Range kThreads{1, 4096}, kPorts{0, 65535}, kRepeats{3, 1000}, k
 std::string resolution_json(std::string_view text);
 std::string crop_json(std::string_view text);
 
-/// "1%" or ".01" -> .01; nothing if it is neither, or below 0.
+/// "1%" or "0.01" -> 0.01; empty for other texts and negative numbers.
 std::optional<double> share_of(std::string_view text);
 
 CLI::Validator resolution_check();
 CLI::Validator crop_check();
-/// CLI11 would let a number beyond 64 bits wrap or stop at the end, and take 010 for 8.
+/// CLI11 would wrap or clamp numbers beyond 64 bits, and read 010 as 8.
 CLI::Validator whole_number(const Range& range);
 /// Fraction of 0 or more. A number without % must be below 1, because "1" usually means 1 %.
 CLI::Validator share_check();
@@ -31,7 +31,7 @@ CLI::Validator share_check();
 CLI::Validator positive_share_check();
 /// "2s", "500ms", "1.5min", "1h" or seconds alone, to seconds.
 CLI::Validator seconds_of();
-/// "2mm", "500um", ".5cm", "1m" or millimetres alone, to millimetres.
+/// "2mm", "500um", "0.5cm", "1m" or millimetres alone, to millimetres.
 CLI::Validator millimetres_of();
 /// "500MB", "8GB" or 0, to bytes; kB is 1000.
 CLI::Validator bytes_of();
@@ -40,7 +40,7 @@ CLI::Validator number_check();
 CLI::Validator log_check();
 /// Checks the extension of a file name.
 CLI::Validator extension_check(const std::string& extension);
-/// "diffuse,N", "all" or "none"; nothing if a name is no layer's.
+/// "diffuse,N", "all" or "none"; empty if a name is not a layer's.
 std::optional<LayerChoice> layers_of(const std::string& text);
 CLI::Validator layers_check();
 /// NAME=VALUE.

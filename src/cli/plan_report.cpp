@@ -21,14 +21,14 @@ namespace {
 constexpr double kLong = 5;             // seconds
 constexpr std::size_t kMostShown = 50;  // bodies
 
-/// The labels make a column.
+/// Labels form a column.
 void print_row(const std::string& label, const std::string& text) {
   write_line(stdout, fmt::format("{:<12}{}", label, text));
 }
 
 using Paragraphs = std::vector<std::string>;
 
-/// A row with a label begins a paragraph, one without belongs to the last.
+/// A row with a label begins a paragraph, one without continues it.
 void add_row(Paragraphs& paragraphs, const std::string& label, const std::string& text) {
   const std::string row = fmt::format("{:<12}{}", label, text);
   if (label.empty())
@@ -62,7 +62,7 @@ std::string lights_text(const std::vector<Light>& lights) {
   return text.empty() ? "none" : text;
 }
 
-/// With methods that have one: profile and error, a row each.
+/// Adds profile and error, for methods using a radial profile.
 void add_model(Paragraphs& plan, const GroupPlan& group, double across_air) {
   if (method_of(group.method).uses_radial_profile()) add_row(plan, "", "profile " + model_text(group.model));
   const std::string error = model_error_text(group.model, group.method);
@@ -84,16 +84,17 @@ void add_group(Paragraphs& plan, const Scene& scene, const World& world, const G
   add_row(plan, "", samples_text(group));
 }
 
-/// How an asset without a translucent material gets one: few formats can name it.
+/// Hint for an asset without a translucent material, as few formats have one.
 std::string marble_text(const Scene& scene, const World& world) {
   if (scene.translation.empty() || scene.shapes.empty() || !scene.media.empty()) return {};
   constexpr double kHandful = 50;  // mm
   constexpr double kMuch = 500;    // mm: a thousand mean free paths of marble
   const Shape& shape = scene.shapes[0];
-  // An OBJ has no unit, a figure in metres is as large as a person: by its size light transmitted or does not.
+  // OBJ files have no unit: a figurine in metres is as large as a person, and its size decides its
+  // translucency.
   const double diagonal = world.diagonal * world.unit;
   const bool is_unitless = scene.file.ends_with(".obj") && scene.mm_per_unit == 1;
-  const bool has_lights = std::ranges::any_of(scene.lights, is_delta);  // whose brightness follows the unit
+  const bool has_lights = std::ranges::any_of(scene.lights, is_delta);  // brightness depends on the unit
   const bool has_unit = !(diagonal > 0) || !(is_unitless || (diagonal > kMuch && !has_lights));
   return fmt::format(
       "; --set media.marble.preset=marble --set shapes.{}.medium=marble{} gives {} the medium marble{}{}",
@@ -136,7 +137,7 @@ Json model_json(const BodyModel& model) {
   return json;
 }
 
-/// asks_air: what jumps across the air takes a moment to find
+/// asks_air: includes transport across the air, slow to compute
 Json group_json(const Scene& scene, const World& world, const GroupPlan& group, bool asks_air) {
   Json shapes = Json::array();
   for (const std::uint32_t mesh : group.meshes) shapes.push_back(scene.shapes[mesh].name);

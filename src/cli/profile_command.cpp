@@ -44,7 +44,7 @@ Medium preset_medium(const std::string& name) {
                   : "");
 }
 
-/// The mean cosine of a medium's own text; a scene's medium has it worked into its coefficients.
+/// Mean cosine of a medium given as text; a scene's medium includes it in its coefficients.
 double anisotropy_of(const std::string& text) {
   if (!is_object(text)) return 0;
   const Document document{kGiven, text, {}, {}, 1, line_starts_of(text)};
@@ -78,7 +78,7 @@ ProfileRequest request_of(const ProfileArguments& arguments) {
   return request;
 }
 
-/// A folder that is there and takes files: what cannot be written is said before the work.
+/// Creates the folder or checks that it is writable, before the work.
 void prepare_folder(const std::string& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
@@ -86,7 +86,7 @@ void prepare_folder(const std::string& folder) {
   check_page_file(folder + "/index.html");
 }
 
-/// The page last: what it links to is there then.
+/// Writes the page last, after the files it links to.
 void write_report(const std::string& folder, const ProfileReport& report) {
   write_file(folder + "/totals.csv", to_csv(totals_table(report)));
   write_file(folder + "/profile.csv", to_csv(rings_table(report)));

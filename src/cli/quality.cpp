@@ -20,7 +20,7 @@ Error bad_usage(const std::string& message, const std::string& expected, const s
   return Error(ErrorKind::bad_input, {}, 0, 0, message, expected, got);
 }
 
-/// Requires that settings can express the choice: several bodies share one spacing.
+/// Checks that settings can express the choice: several bodies share one spacing.
 void check_groups(const Session& session, const char* option) {
   if (session.scene().settings.samples && session.plan().groups.size() > 1)
     throw bad_usage(fmt::format("{} chooses the sample spacing, and so the samples of each body", option),
@@ -56,7 +56,7 @@ KnownErrors choose_cells(StageRunner& stages, const RenderArguments& arguments, 
   return known;
 }
 
-/// Which of the two is asked for; "" for neither.
+/// The given option of the two; "" for neither.
 const char* option_of(const RenderArguments& render) {
   return render.target_error ? "--target-error" : render.time_budget ? "--time-budget" : "";
 }
@@ -95,7 +95,7 @@ bool chooses_settings(const RenderArguments& arguments) {
 }
 
 double budget_left(const RenderArguments& arguments) {
-  // Too little is too little, however much.
+  // A spent budget counts as 1 ms, and is reported as too small.
   return std::max(1e-3, *arguments.time_budget - process_cpu_seconds());
 }
 
@@ -140,7 +140,7 @@ RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache*
 FinishPicture trial_writing(const RenderArguments& arguments, const Film& film) {
   return [&arguments, &film](const Image& picture) {
     for (const std::string& path : arguments.outputs) {
-      const AtomicFile trial(path);  // never put in place
+      const AtomicFile trial(path);  // never committed
       write_picture(trial.temporary(), picture, film, arguments.layers);
     }
   };
@@ -190,7 +190,7 @@ std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArg
     print_warning(arguments.log, "the scene has no translucent shape, so --verify measures nothing");
     return {};
   }
-  // An error far below the target need not be known to its last digit.
+  // An error far below the target is not measured to its last digit.
   const double expected = errors.predicted
                               ? std::max(*errors.predicted, kKnownShare * errors.target.value_or(0))
                               : estimated_relative_error(picture.image, picture.translucent);

@@ -63,7 +63,7 @@ void check_precompute(const RenderArguments& arguments, const Scene& scene, cons
 
 struct Shading {
   RenderResult picture;
-  std::optional<DirectResult> direct;  // without its picture
+  std::optional<DirectResult> direct;  // without its image
   std::uint64_t rays = 0;
   double cpu_seconds = 0, embree_seconds = 0;
 };
@@ -100,7 +100,7 @@ DirectResult shade_direct(const RenderArguments& arguments, const Session& sessi
   }
 }
 
-/// Computes what the picture needs. Walks are kept on Ctrl-C.
+/// Computes the inputs of the image. Ctrl-C saves random walks.
 void prepare(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   const auto run = [&] { stages.run_unmeasured("rays", [&] { session.prepare(&stages.monitor()); }); };
   if (session.scene().settings.method != Method::volume) return run();
@@ -170,7 +170,7 @@ Summary summarize(const Session& session, const Shading& shading) {
   return summary;
 }
 
-/// The arguments, with what --time-budget or --target-error chose in its place.
+/// The arguments with the settings chosen by --time-budget or --target-error.
 RenderArguments repeating(const RenderArguments& arguments, const Session& session, const Shading& shading) {
   if (!chooses_settings(arguments)) return arguments;
   RenderArguments repeated = arguments;
@@ -190,7 +190,7 @@ struct Shared {
   std::vector<std::string>* last_plan = nullptr;
 };
 
-/// error Error{bad_input}: an option that the method has no use for
+/// error Error{bad_input}: an option without effect on the method
 void check_method_options(const RenderArguments& arguments, const Scene& scene) {
   const Method method = scene.settings.method;
   if (method == Method::direct || scene.lights.empty()) return;
@@ -205,7 +205,7 @@ void check_method_options(const RenderArguments& arguments, const Scene& scene) 
     throw bad_file(arguments.resume, "this method has no sums to resume", "--method direct or volume");
 }
 
-/// Gives the session its scene, unless the frame is there already (none); the scene's hash.
+/// Gives the session its scene and returns the scene's hash; none if the frame exists already.
 std::optional<std::string> load(StageRunner& stages, const RenderArguments& arguments, Session& session,
                                 std::optional<int> frame) {
   return stages.run("loading", [&]() -> std::optional<std::string> {
@@ -227,8 +227,8 @@ double seconds_of_trial(const Session& session) {
   return expected_seconds(trial, make_plan(trial, session.world()));
 }
 
-/// Chooses settings that are left open, and says what will be done.
-/// error Error{bad_input}: what is asked for does not go together, or does not fit into memory
+/// Chooses open settings, and prints the plan.
+/// error Error{bad_input}: options are incompatible, or exceed the memory
 KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session& session,
                  const Shared& shared) {
   const Scene& scene = session.scene();
@@ -246,7 +246,7 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   return errors;
 }
 
-/// The picture without its metadata, with warnings about it.
+/// The image without its metadata, with its warnings.
 Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Session& session,
                      const Shared& shared, bool is_frame) {
   const std::size_t noted = session.costs().size();
@@ -269,7 +269,7 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
   return shading;
 }
 
-/// Writes the outputs, and says what they are and what they cost.
+/// Writes the outputs, and prints their names and the costs.
 void finish(StageRunner& stages, const RenderArguments& arguments, const RenderArguments& repeated,
             const Session& session, const Shading& shading, const KnownErrors& errors) {
   auto outputs =
@@ -288,8 +288,7 @@ void finish(StageRunner& stages, const RenderArguments& arguments, const RenderA
   print_summary(arguments.log, summary);
 }
 
-/// One picture; `frame`: of a range, whose session is anchored; whether it was rendered, and not there
-/// already.
+/// Renders one image; returns false if it existed. frame: of a range, with an anchored session.
 bool render_scene(const RenderArguments& arguments, Session& session, const Shared& shared,
                   std::optional<int> frame) {
   StageRunner stages(arguments.log);
@@ -302,7 +301,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   const Scene& scene = session.scene();
   KnownErrors errors = plan(stages, arguments, session, shared);
   Shading shading = make_picture(stages, arguments, session, shared, frame.has_value());
-  std::optional<Error> stopped;  // by Ctrl-C while the error was measured; the picture is there
+  std::optional<Error> stopped;  // by Ctrl-C during the error measurement; the image is complete
   try {
     errors.measured = verify_picture(stages, arguments, session, errors, shading.picture);
   } catch (const Error& failure) {
@@ -313,7 +312,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   const RenderArguments repeated = repeating(arguments, session, shading);
   if (arguments.time_budget) hash = scene_hash(repeated.scene, repeated.overrides, scene);
   Image& image = shading.picture.image;
-  // With --target-error the picture is what was asked for; with --time-budget it hangs on the clock.
+  // The image depends on the target of --target-error, but on the clock with --time-budget.
   image.metadata = make_metadata(arguments.time_budget ? repeated : arguments, *hash, scene, session.world(),
                                  session.bodies(), frame);
   if (errors.target || errors.measured)
@@ -328,7 +327,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
 }  // namespace
 
 void render_command(const RenderArguments& arguments) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader of the log leaving must not cost the picture
+  std::signal(SIGPIPE, SIG_IGN);  // a closed log pipe must not fail the render
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));

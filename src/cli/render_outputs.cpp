@@ -17,7 +17,7 @@
 namespace opaline {
 namespace {
 
-/// The files that a scene was read from. Names with <UDIM> stand for several.
+/// Input files of a scene. A name with <UDIM> represents several.
 std::vector<std::string> input_files(const Scene& scene) {
   std::vector<std::string> files{scene.file};
   for (const Shape& shape : scene.shapes) {
@@ -30,7 +30,7 @@ std::vector<std::string> input_files(const Scene& scene) {
   return files;
 }
 
-/// Returns whether a name, of which <UDIM> stands for any tile, is that of an existing file.
+/// True if a name, with any tile in place of <UDIM>, refers to an existing file.
 bool is_name_of(const std::string& name, const std::string& file) {
   constexpr std::string_view kTile = "<UDIM>";
   constexpr std::size_t kDigits = 4;
@@ -80,7 +80,7 @@ std::size_t asked_layer_bytes(const LayerChoice& layers, const Scene& scene) {
   if (channels == 0) return 0;
   const Rectangle part = rendered_part(scene.film);
   const std::size_t pixels = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);
-  // Beside them the layers of one more picture: by one light, or before the channels were added.
+  // In addition, the layers of one more image: by one light, or before the channels were added.
   return pixels * sizeof(float) * (channels + layer_names(method_of(scene.settings.method).layers()).size());
 }
 

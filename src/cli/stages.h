@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One stage after the other, each with progress, its cost, and an end when the user asks for it.
+// Runs stages with progress, cost, and interruption by the user.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ class StageRunner {
   explicit StageRunner(const Log& log) : log_(log), interrupt_(monitor_) {}
 
   /// Runs work().
-  /// error Error{interrupted} before it if the user asked to stop, besides the stage's own. So
-  /// the last one, writing, is not cut short between two files.
+  /// error Error{interrupted} before it if the user has interrupted; errors of the stage. Checks only before
+  ///       a stage, so writing is not interrupted between two files.
   template <class Work>
   auto run_unmeasured(const std::string& stage, const Work& work, InnerStages inner = InnerStages::parts) {
     advance(&monitor_, 0);
@@ -28,7 +28,7 @@ class StageRunner {
     return work();
   }
 
-  /// The same, and its cost is noted.
+  /// Runs work() and records its cost.
   template <class Work>
   auto run(const std::string& stage, const Work& work, InnerStages inner = InnerStages::parts) {
     const Stopwatch watch;

@@ -21,18 +21,19 @@ StageCost total_of(const std::vector<StageCost>& costs) {
   return total;
 }
 
-/// Mega-rays a CPU second; 0 where there was no time to measure.
+/// Mega-rays per CPU second; 0 without a measured time.
 double mega_rays(std::uint64_t rays, double seconds) {
   return seconds > 0 ? 1e-6 * double(rays) / seconds : 0;
 }
 
-/// Costs nothing that the table could show.
+/// True if the cost is below the table's resolution.
 bool is_nothing(const StageCost& cost) {
   constexpr double kShown = .0005;
   return cost.wall_seconds < kShown && cost.cpu_seconds < kShown;
 }
 
-/// Prints the cost of each stage. Stages computed by the trials belong to the cost of choosing and are named there.
+/// Prints the cost of each stage. Stages computed by the trials belong to the cost of choosing and are named
+/// there.
 void print_costs(const Summary& summary) {
   std::vector<StageCost> shown = summary.costs;
   const auto choosing = std::ranges::find(shown, "choosing", &StageCost::stage);
@@ -51,7 +52,7 @@ void print_costs(const Summary& summary) {
                                    cost.cpu_seconds, cost.stage == "choosing" ? of_trials : ""));
 }
 
-/// Error that settings decide: samples, tolerance, shadow rays, cells.
+/// Error due to settings: samples, tolerance, shadow rays, cells.
 std::string settings_error_text(const Summary& summary) {
   const KnownErrors& errors = summary.errors;
   std::string text;

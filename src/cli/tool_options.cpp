@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the commands that render nothing of their own: import, compare, bench, profile and cache.
+// Options of the commands without a render of their own: import, compare, bench, profile and cache.
 #include "cli/command_options.h"
 #include "cli/help_texts.h"
 #include "cli/option_helpers.h"

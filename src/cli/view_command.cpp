@@ -21,7 +21,7 @@
 namespace opaline {
 namespace {
 
-/// A file by a process of its own, so it is what `opaline render` writes and the view goes on meanwhile.
+/// Renders a file in a process of its own, with the same bytes as `opaline render`, while the view continues.
 void render_file(const ViewArguments& arguments, const std::vector<std::string>& overrides,
                  std::optional<int> frame, const std::string& path, Monitor& monitor) {
   std::vector<std::string> words{"render", arguments.scene, "-o", path, "--log", "json"};
@@ -38,7 +38,7 @@ bool is_at_desktop() {
          ::isatty(STDOUT_FILENO) == 1;
 }
 
-/// In the desktop's browser. Nothing is said where that fails: the URL is printed.
+/// Opens a URL in the desktop's browser; fails silently, as the URL is printed.
 void open_on_desktop(std::string url) {
   posix_spawn_file_actions_t silent;
   ::posix_spawn_file_actions_init(&silent);

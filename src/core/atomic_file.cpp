@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 struct Descriptor {
   int number = -1;
   ~Descriptor() { close(); }
-  /// 0 or -1 with errno; once.
+  /// 0 or -1 with errno; only once.
   int close() { return number < 0 ? 0 : ::close(std::exchange(number, -1)); }
 };
 
@@ -33,7 +33,7 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : ".";
 }
 
-/// A link stays a link: its target is replaced, or made where there is none yet.
+/// Follows links: the target is replaced, or created if missing.
 std::string resolve_link(const std::string& path) {
   constexpr int kMostLinks = 40;  // as the kernel's own limit
   std::error_code failure;
@@ -42,13 +42,12 @@ std::string resolve_link(const std::string& path) {
     if (links == kMostLinks) throw run_failed(path, std::string("cannot write: ") + std::strerror(ELOOP));
     const fs::path next = fs::read_symlink(target, failure);
     if (failure) throw run_failed(path, "cannot write: " + failure.message());
-    target = folder_of(target) / next;  // which is `next` alone where that is absolute
+    target = folder_of(target) / next;  // only `next` if it is absolute
   }
   return target.string();
 }
 
-/// Said before the work and not after it: a rename would replace a device or a write-protected file without a
-/// word.
+/// Checks before the work: a rename would silently replace a device or a write-protected file.
 void require_replaceable(const std::string& path) {
   if (!fs::path(path).has_filename()) throw run_failed(path, "cannot write: not a file name");
   std::error_code failure;
@@ -62,7 +61,7 @@ void require_replaceable(const std::string& path) {
     throw run_failed(path, "cannot write: " + reason());
 }
 
-/// Creates an empty file beside `path` under a name that nobody had, also where hosts share the folder.
+/// Creates an empty file beside `path` with a unique name, also between hosts sharing the folder.
 std::string create_beside(const fs::path& path) {
   const fs::path folder = folder_of(path);
   const std::string stem = ".opaline-" + std::to_string(::getpid()) + '-';
@@ -78,7 +77,7 @@ std::string create_beside(const fs::path& path) {
   }
 }
 
-/// 0, or the errno of what failed.
+/// 0, or the errno of the failure.
 int flush_to_disk(const fs::path& path, int flags) {
   Descriptor file{::open(path.c_str(), flags | O_CLOEXEC)};
   if (file.number < 0 || ::fsync(file.number) != 0 || file.close() != 0) return errno;
@@ -110,8 +109,8 @@ void AtomicFile::append(std::string_view bytes) {
 
 void AtomicFile::commit() {
   put_in_place(flush_to_disk(temporary_, O_WRONLY));
-  // The new file is in place. A folder that may not be opened for reading, or a file system that cannot flush
-  // folders (EINVAL), is no failure of the run.
+  // Flushes the folder of the new file. A folder without read permission, or a file system without folder
+  // flushes (EINVAL), is not an error.
   const int failure = flush_to_disk(folder_of(path_), O_RDONLY | O_DIRECTORY);
   if (failure != 0 && failure != EACCES && failure != EINVAL)
     throw run_failed(path_, std::string("written, but its folder not flushed: ") + std::strerror(failure));

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cancellation of stages that report no progress: they have no monitor, and look at that of the work they are part of.
+// Cancellation of stages without progress: they have no monitor, and check that of the enclosing work.
 #pragma once
 
 #include "opaline/core/monitor.h"
 
 namespace opaline {
 
-/// While it lives, this thread works for the caller of a monitor.
+/// During its lifetime, this thread works for the caller of a monitor.
 class CancelScope {
  public:
-  /// monitor: null: nobody cancels
+  /// monitor: null: no cancellation
   explicit CancelScope(Monitor* monitor);
   ~CancelScope();
   CancelScope(const CancelScope&) = delete;
@@ -19,12 +19,13 @@ class CancelScope {
   Monitor* before_;
 };
 
-/// Made by the thread beginning a stage, for the loops of all its threads; cheap enough for each comparison of a sort.
+/// Constructed by the thread beginning a stage, for the loops of all its threads; cheap enough for each
+/// comparison of a sort.
 class CancelCheck {
  public:
   CancelCheck();
 
-  /// error Error{interrupted}: the caller asked to stop
+  /// error Error{interrupted}: the caller has cancelled
   void operator()() const {
     if (monitor_ != nullptr && monitor_->cancelled.load(std::memory_order_relaxed)) advance(monitor_, 0);
   }

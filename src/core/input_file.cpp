@@ -30,7 +30,7 @@ InputFile::Descriptor::~Descriptor() {
   if (number >= 0) ::close(number);
 }
 
-// The kind is checked before the file is opened, for opening a device may have effects, and again after, for another file
+// Checks the file type before opening, as opening a device may have effects, and again after, as another file
 // may have taken its name.
 InputFile::InputFile(const std::string& path, const std::string& noun,
                      std::string (*hint)(const std::string& path))

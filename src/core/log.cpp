@@ -16,7 +16,7 @@ const char* name_of(ErrorKind kind) {
                                           : "run_failed";
 }
 
-/// Reason that ended the run, also for exceptions of libraries.
+/// Reason for ending the run, also for exceptions of libraries.
 std::string text_of(const std::exception& failure) {
   if (is_out_of_memory(failure)) return "out of memory";
   if (const auto* files = dynamic_cast<const std::filesystem::filesystem_error*>(&failure))
@@ -35,7 +35,7 @@ void write_line(std::FILE* stream, std::string_view line) {
   errno = 0;
   const bool is_written =
       std::fwrite(whole.data(), 1, whole.size(), stream) == whole.size() && std::fflush(stream) == 0;
-  if (!is_written && errno == EPIPE) std::clearerr(stream);  // a reader that left has seen enough
+  if (!is_written && errno == EPIPE) std::clearerr(stream);  // the reader has closed the pipe
 }
 
 void print_event(const Log& log, const char* event, const Json& members) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program's voice. Text: results on stdout, warnings and errors on stderr. JSON: one object a line on
-// stdout,
-// {"event": "view" | "frame" | "skipped" | "target" | "plan" | "reuse" | "warning" | "progress" | "stage" | "done" |
-// "error", ...}.
+// Log of the program. Text: results on stdout, warnings and errors on stderr. JSON: one object per line on
+// stdout, {"event": "view" | "frame" | "skipped" | "target" | "plan" | "reuse" | "warning" | "progress" |
+// "stage" | "done" | "error", ...}.
 #pragma once
 
 #include <cstdio>
@@ -15,11 +14,11 @@ namespace opaline {
 
 enum class LogFormat { text, json };
 
-/// How far a range of frames is.
+/// Progress of a range of frames.
 struct FramesSoFar {
-  std::size_t count = 0, finished = 0;  ///< all; rendered, there already or failed
+  std::size_t count = 0, finished = 0;  ///< all; rendered, existing or failed
   std::size_t rendered = 0;
-  double seconds = 0;  ///< that rendering them took
+  double seconds = 0;  ///< time of their rendering
 
   double fraction() const { return double(finished) / double(count); }
 };
@@ -32,19 +31,19 @@ struct Log {
 
 using Json = nlohmann::ordered_json;
 
-/// One line without spaces; bytes that are not UTF-8 (a path may hold any) become U+FFFD.
+/// One line without spaces; bytes other than UTF-8, possible in paths, become U+FFFD.
 std::string compact(const Json& value);
 
-/// One line, flushed. Failures are left in ferror(stream), but for a pipe that nobody reads any more: a log must not cost
-/// a picture.
+/// Writes one line and flushes. Failures remain in ferror(stream), except for a closed pipe: a log must not
+/// fail a render.
 void write_line(std::FILE* stream, std::string_view line);
 
-/// A JSON event; only where the log is JSON.
+/// A JSON event; no effect on a text log.
 void print_event(const Log& log, const char* event, const Json& members);
 
 void print_warning(const Log& log, const std::string& text);
 
-/// Prints what ended the run and returns its exit code: Error by its kind, anything else 3.
+/// Prints the reason for ending the run and returns its exit code: Error by its kind, anything else 3.
 int print_failure(const Log& log, const std::exception& failure);
 
 }  // namespace opaline

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kUnknown = std::numeric_limits<std::size_t>::max();
 
-/// A file of one number; none if it is missing or says "max".
+/// Number in a file; none if it is missing or "max".
 std::optional<std::uint64_t> number_in(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::uint64_t value = 0;
@@ -24,7 +24,7 @@ std::optional<std::uint64_t> number_in(const std::filesystem::path& path) {
   return {};
 }
 
-/// The number behind a name in a table of "name number" or "name: number" lines; none if it is missing.
+/// Number of a name in a table of "name number" or "name: number" lines; none if it is missing.
 std::optional<std::uint64_t> entry_of(const std::filesystem::path& path, const std::string& name) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
@@ -40,7 +40,7 @@ std::size_t less(std::uint64_t limit, std::uint64_t used) {
   return std::size_t(limit > used ? limit - used : 0);
 }
 
-/// The names that the two versions of control groups give the same files.
+/// File names in the two versions of control groups.
 struct GroupFiles {
   const char *limit, *used, *droppable;
 };
@@ -54,8 +54,8 @@ std::size_t left_in_group(const std::filesystem::path& folder, const GroupFiles&
   return less(*limit, less(*used, droppable));
 }
 
-/// Available memory of a control group and its parents. Inside a container the path that the kernel reports may not be
-/// there; the mount's own folder then is the container's group.
+/// Available memory of a control group and its parents. In a container, the path reported by the kernel may
+/// be missing; the mount's own folder is then the container's group.
 std::size_t left_in_groups(const std::filesystem::path& mount, std::string group, const GroupFiles& names) {
   std::size_t left = left_in_group(mount, names);
   while (group.size() > 1) {

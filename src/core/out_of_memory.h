@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which exceptions say that memory ran out.
+// Detection of out-of-memory exceptions.
 #pragma once
 
 #include <exception>
@@ -9,8 +9,7 @@
 
 namespace opaline {
 
-/// A size that no memory holds is reported by containers as length_error, a thread without room for its stack
-/// as EAGAIN.
+/// Containers report impossible sizes as length_error, and threads without memory for a stack as EAGAIN.
 inline bool is_out_of_memory(const std::exception& failure) {
   const auto* system = dynamic_cast<const std::system_error*>(&failure);
   return dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ||

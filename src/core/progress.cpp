@@ -43,7 +43,7 @@ std::string left_text(double seconds) {
   return seconds < 1 ? "less than 1 s left" : short_time(seconds) + " left";
 }
 
-/// "12 %, 3.0 s left", as far as it is known.
+/// "12 %, 3.0 s left", if known.
 std::string stage_text(const ProgressState& state) {
   std::string text;
   if (state.fraction >= 0) text += percent(state.fraction);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shows how far a stage is while it runs.
+// Progress display of a running stage.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-/// How far a stage is and how long it will take, from its counters polled now and then.
+/// Estimates progress and remaining time of a stage from periodically polled counters.
 class ProgressEstimate {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -21,9 +21,9 @@ class ProgressEstimate {
   explicit ProgressEstimate(Time now) : start_(now) {}
   void update(const Monitor& monitor, Time now);
 
-  /// Fraction of the work, 0 to .99: a stage that is done shows nothing any more; below 0: not known.
+  /// Fraction of the work, at most 0.99, as a finished stage shows nothing; below 0: unknown.
   double fraction() const { return fraction_; }
-  double seconds_left() const { return seconds_left_; }  ///< below 0: not known yet
+  double seconds_left() const { return seconds_left_; }  ///< below 0: unknown
   double seconds() const { return seconds_; }            ///< since the counters were set to 0
   double noise() const { return noise_; }                ///< Monitor::noise
 
@@ -39,13 +39,13 @@ struct ProgressState {
   double fraction = -1, seconds_left = -1, seconds = 0;  ///< stage progress, see ProgressEstimate
   std::optional<FramesSoFar> frames = {};  ///< progress of a frame range: the line covers the whole range
   double noise = -1;                       ///< noise of the stage
-  std::string trial = {};                  ///< the stage that a search is trying; empty: none
+  std::string trial = {};                  ///< stage tried by a search; empty: none
 };
 
-/// The line, shorter than `columns` so that no terminal wraps it: the bar goes first, then the end is cut.
+/// The line, shorter than `columns` to avoid wrapping: omits the bar first, then truncates.
 std::string progress_line(const ProgressState& state, std::size_t columns);
 
-/// A line of standard error that is written anew, where that is a terminal; it goes with this object.
+/// An updating line on standard error, if it is a terminal; erased by the destructor.
 class TerminalLine {
  public:
   ~TerminalLine() { show(std::string()); }
@@ -57,13 +57,13 @@ class TerminalLine {
   std::string shown_;
 };
 
-/// Stages under way inside of what is shown: parts of it, one after the other, or the trials of a search, whose own
-/// progress says nothing about the search's.
+/// Kind of stages inside the displayed one: successive parts of it, or trials of a search, independent of the
+/// search's progress.
 enum class InnerStages { parts, trials };
 
-/// While it lives, a thread polls the monitor ten times a second and shows the stage on stderr: on a terminal
-/// as one line that updates and goes away, otherwise as a line after ten seconds and ever more rarely. With a
-/// JSON log: an event at the start and at most two a second. Nothing with --quiet.
+/// During its lifetime, polls the monitor ten times a second and shows the stage on stderr: on a terminal as
+/// one updating line, erased at the end, otherwise as a line after ten seconds and then in growing intervals.
+/// With a JSON log: an event at the start and at most two per second. No output with --quiet.
 class Progress {
  public:
   Progress(const Log& log, const Monitor& monitor, std::string stage, InnerStages inner = InnerStages::parts);

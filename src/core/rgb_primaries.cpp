@@ -22,7 +22,7 @@ ColorMatrix inverse(const ColorMatrix& m) {
   return transposed({x * scale, y * scale, z * scale});
 }
 
-// Sum of 1: the y of a primary may be 0.
+// Normalised by the sum, as the y of a primary may be 0.
 Vec3d xyz_of(const std::array<double, 2>& xy) {
   return {xy[0], xy[1], 1 - xy[0] - xy[1]};
 }

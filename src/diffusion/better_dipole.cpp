@@ -15,8 +15,8 @@ double mean_decay(double x) {
   return x > 0 ? -std::expm1(-x) / x : 1;
 }
 
-// The integral of r' R_d 4 pi / alpha'^2 from r to infinity: of z (1 + s d) e^-sd / d^3 it is z e^-sd / d, of
-// e^-sd / d it is e^-sd / s, whose difference between the sources has no 0/0. r in mean free paths.
+// Integral of r' R_d 4 pi / alpha'^2 from r to infinity. The term z (1 + s d) e^-sd / d^3 gives z e^-sd / d,
+// and e^-sd / d gives e^-sd / s; the difference between the sources avoids 0/0. r in mean free paths.
 double beyond_radius(const BetterDipole& p, double r) {
   const double real = std::hypot(r, 1.0), high = std::hypot(r, p.height);
   const double apart = (p.height - 1) * (p.height + 1) / (real + high);  // high - real
@@ -74,7 +74,7 @@ double sample_diffusion_distance(const BetterDipole& p, double beyond) {
   return p.mean_free_path * find_radius([&](double r) { return beyond_radius(p, r) / all; }, beyond, kLeast);
 }
 
-// By parts: what lies beyond R is the profile beyond R and pi R^2 R_d(R).
+// By parts: the integral beyond R is the profile beyond R plus pi R^2 R_d(R).
 double sample_chord_sphere_radius(const BetterDipole& p, double u, double) {
   const double all = beyond_radius(p, 0);
   const auto beyond = [&](double r) { return (beyond_radius(p, r) + r * r / 2 * density(p, r)) / all; };

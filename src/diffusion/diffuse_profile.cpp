@@ -16,11 +16,11 @@ namespace {
 
 ReducedMedium reduce(const PhysicalMedium& medium, std::size_t channel, ProfileKind, double eta) {
   const double sigma_a = medium.sigma_a[channel], sigma_t_prime = sigma_a + medium.sigma_s_prime[channel];
-  if (sigma_t_prime < 1e-30) return {};  // a mean free path no scene is as large as
+  if (sigma_t_prime < 1e-30) return {};  // a mean free path beyond any scene
   return {1 / sigma_t_prime, sigma_a / sigma_t_prime, eta};
 }
 
-// By the inverse of the profile's own total; 1/sigma_t is unreduced, so g takes part.
+// Inverts the profile's own total; 1/sigma_t is unreduced, so g is needed.
 ReducedMedium reduce(const ArtistMedium& medium, std::size_t channel, ProfileKind kind, double eta) {
   const double absorbed = invert_albedo(kind, medium.subsurface_color[channel], eta);
   return {reduced_mean_free_path(medium.subsurface_radius[channel], absorbed, medium.anisotropy), absorbed,
@@ -111,8 +111,8 @@ ChannelProfile make_channel_profile(ProfileKind kind, const ReducedMedium& mediu
 double invert_albedo(ProfileKind kind, double total, double eta) {
   if (total >= 1) return 0;
   if (total <= 0) return 1;
-  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1. Its logarithm is looked for, so the relative error of
-  // 1 - alpha' is small where the medium hardly absorbs.
+  // The total falls from 1 to 0 as 1 - alpha' goes from 0 to 1. Solves for the logarithm, so the relative
+  // error of 1 - alpha' is small for weak absorption.
   constexpr double kLeast = -80, kTolerance = 1e-12;
   const auto excess = [&](double logarithm) {
     return total_diffuse_reflectance(make_channel_profile(kind, {1, std::exp2(logarithm), eta})) - total;

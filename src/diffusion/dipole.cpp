@@ -68,8 +68,8 @@ struct Source {
   double z, s;  // depth, mm; sigma_tr z
 };
 
-// One of the two sources by its fraction of the total, and what is left of `beyond` in (0, 1]. The virtual one
-// has the far end, where 1 - beyond would keep no digits.
+// Chooses one of the two sources by its fraction of the total, and rescales `beyond` in (0, 1]. The virtual
+// one has the far end, where 1 - beyond would cancel.
 Source choose_source(const Dipole& dipole, double& beyond) {
   const double ratio = std::exp(dipole.s_real - dipole.s_virtual), share = ratio / (1 + ratio);
   if (beyond <= share) {

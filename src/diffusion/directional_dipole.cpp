@@ -20,7 +20,7 @@ using std::numbers::pi;
 
 constexpr double kD = 1. / 3;  // diffusion coefficient over the mean free path
 
-/// Exitance at a place x from a source whose light goes along w, seen along n, at the distance d.
+/// Exitance at x along the normal n, from a source of direction w at the distance d.
 double source_exitance(const DirectionalKernel& p, const Vec3d& x, const Vec3d& w, double d, const Vec3d& n) {
   const double s = p.decay * d, one = 1 + s, along = dot(x, w);
   const double fluence = d * d / kD + 3 * one * along;
@@ -29,7 +29,7 @@ double source_exitance(const DirectionalKernel& p, const Vec3d& x, const Vec3d& 
   return std::exp(-s) / (4 * pi * d * d * d) * (p.from_fluence * fluence - p.from_flux * flux);
 }
 
-/// Modified normal of the plane through entry and exit that is nearest to the surface at the entry.
+/// Modified normal at the entry: of the plane through entry and exit nearest to the surface.
 Vec3d modified_normal(const Vec3d& x, const Vec3d& normal) {
   const double r2 = dot(x, x);
   if (!(r2 > 0)) return normal;
@@ -41,7 +41,7 @@ Vec3d modified_normal(const Vec3d& x, const Vec3d& normal) {
   return u;
 }
 
-/// The light's way inside, unit.
+/// Refracted direction, unit.
 Vec3d way_inside(const Vec3d& towards_light, const Vec3d& normal, double eta) {
   return refracted_inward(-towards_light, normal, eta);
 }
@@ -60,9 +60,9 @@ double exitance(const DirectionalKernel& p, const Vec3d& x, const Vec3d& entry_n
                            source_exitance(p, from_image, mirrored(w, n), length(from_image), exit_normal));
 }
 
-/// A way inside of light from everywhere, and how much of all light goes there.
+/// A refracted direction of diffuse light, with its fraction of the flux.
 struct WayInside {
-  Vec3d direction;  ///< in the plane y = 0 of a surface whose normal is z
+  Vec3d direction;  ///< in the plane y = 0 of a surface with the normal z
   double share;
 };
 
@@ -74,7 +74,7 @@ WayInside way_at(double cosine, double eta) {
 std::vector<WayInside> diffuse_ways(double eta) {
   constexpr unsigned kCosines = 12;
   using Rule = boost::math::quadrature::gauss<double, kCosines>;
-  const double low = eta < 1 ? std::sqrt(1 - eta * eta) : 0;  // less is reflected wholly
+  const double low = eta < 1 ? std::sqrt(1 - eta * eta) : 0;  // total reflection below
   std::vector<WayInside> ways;
   double sum = 0;
   for (std::size_t i = 0; i < Rule::abscissa().size(); ++i)
@@ -89,7 +89,7 @@ std::vector<WayInside> diffuse_ways(double eta) {
   return ways;
 }
 
-/// Mean over the ways and over the azimuth at the distance r on a plane, mean free paths.
+/// Mean over the directions and over the azimuth at the distance r on a plane, mean free paths.
 double ring_mean(const DirectionalKernel& p, const std::vector<WayInside>& ways, double r) {
   constexpr int kAzimuths = 12;  // azimuths of a half circle
   const Vec3d normal{0, 0, 1};
@@ -102,7 +102,7 @@ double ring_mean(const DirectionalKernel& p, const std::vector<WayInside>& ways,
   return sum / kAzimuths;
 }
 
-/// Integral over the plane of a function of r that falls as a dipole's far away: of ln r by trapezoids.
+/// Integral over the plane of a function of r with a dipole's decay: trapezoids over ln r.
 template <class F>
 double plane_integral(const F& f, double decay, double width) {
   constexpr double kStep = std::numbers::ln10 / 20, kFirst = 1e-3;
@@ -120,7 +120,7 @@ ProfileShape mean_shape(const DirectionalKernel& kernel) {
   std::vector<double> logarithms;
   for (std::size_t i = 0; i < RadialTable::kKnots; ++i) {
     const double r = RadialTable::knot(i), over = ring_mean(kernel, ways, r) / reference(r);
-    // Where the exponential underflows the ratio stays.
+    // Constant ratio beyond the exponential's underflow.
     logarithms.push_back(over > 0 ? std::log(over) : logarithms.empty() ? 0 : logarithms.back());
   }
   return {RadialTable(reference, std::move(logarithms)),

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inverse of a falling function of the distance.
+// Inverse of a decreasing function of the distance.
 #pragma once
 
 #include <cmath>
 
 namespace opaline {
 
-/// The r > 0 at which a falling function of it, 1 at 0, is `share`; by bisection of log2 r from `low` on.
+/// Solves falling(r) = share for a decreasing function with value 1 at 0, by bisection of log2 r from `low`
+/// on.
 template <class Falling>
 double find_radius(const Falling& falling, double share, double low) {
   if (share >= 1) return 0;

@@ -23,7 +23,7 @@ KernelTable::KernelTable(const DiffuseProfile& profile, Kernel kernel, double r_
   const auto reflectance = [&](std::size_t channel, double s) {
     return kernel(profile.channels[channel], std::sqrt(s) * scale);
   };
-  // End where even the last channel has fallen under 1e-30 of the transmitted flux per squared scale.
+  // Ends once the last channel is below 1e-30 of the transmitted flux per squared scale.
   const auto negligible = [&](double s) {
     double largest = 0;
     for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, reflectance(c, s));

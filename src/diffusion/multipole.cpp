@@ -16,13 +16,13 @@ namespace {
 
 using std::numbers::pi;
 
-// Pairs of images on either side that are summed, the rest by an integral: an error of some 1e-6 of R_d, where the two
-// sides nearly cancel in a thin plate, else below 1e-7 (MultipoleProfile.IsTheSumOverImages). Nearer than half the
-// plate's height the images serve, beyond it the modes.
+// Pairs of images summed on either side; an integral approximates the rest. Error about 1e-6 of R_d where the
+// two sides nearly cancel in a thin plate, otherwise below 1e-7 (MultipoleProfile.IsTheSumOverImages). Images
+// serve below half of the plate's height, modes beyond.
 constexpr int kImages = 16;
 constexpr double kNegligible = 40;  // exponents
 
-// Beyond this many diffuse mean free paths, or widths of what is seen, the far face does not show.
+// Thickness, in diffuse mean free paths or in distances of interest, above which the far face is negligible.
 constexpr double kThick = 1e6;
 
 double height(const Multipole& p) {
@@ -43,14 +43,14 @@ double sinh_ratio(double s, double a, double b) {
   return std::exp(-s * (b - a)) * (a * mean_decay(2 * s * a)) / (b * mean_decay(2 * s * b));
 }
 
-// Flux of a source at the height z over the point through the face there, and its fraction within r. Odd in z.
+// Flux through the face at a point under a source at the height z, and its fraction within r. Odd in z.
 struct Flux {
   double decay, r;
   double density(double z) const {
     const double d = std::hypot(r, z);
     return z * (1 + decay * d) * std::exp(-decay * d) / (d * d * d);
   }
-  // Integral of density over z from z on; z > 0.
+  // Integral of density over z to infinity; z > 0.
   double density_above(double z) const {
     const double d = std::hypot(r, z);
     return std::exp(-decay * d) / d;
@@ -67,12 +67,13 @@ struct Flux {
   }
 };
 
-// Sum over all images of f, for the face at `face`: sources at i period + depth, sinks at i period - depth - 2 b.
-// F: the integral of f from a height on.
+// Sum over all images of f, for the face at `face`: sources at i period + depth, sinks at i period - depth -
+// 2 b. F: the integral of f from a height on.
 template <class F, class Above>
 double sum_of_images(const Multipole& p, double face, const F& f, const Above& above) {
   const double period = 2 * height(p), sink = -p.depth - 2 * p.extrapolation;
-  // Towards the face's outside: a source at z sends f(z) up through the upper face, f(d - z) down through the lower.
+  // Towards the face's outside: a source at z sends f(z) up through the upper face, f(d - z) down through the
+  // lower.
   const double sign = face > 0 ? -1 : 1;
   const double a = p.depth - face, b = sink - face;
   double sum = f(a) - f(b);
@@ -164,10 +165,10 @@ double beyond(const Multipole& p, double face, double r) {
 constexpr double kLeast = -60;  // log2 of a radius, mean free paths
 
 constexpr int kPerOctave = 16;
-constexpr double kTrusted = 1e-9;  // shares beyond, where they are what the images leave of the total
+constexpr double kTrusted = 1e-9;  // smaller tails cancel in the sum over images
 constexpr double kTableStep = std::numbers::ln2 / kPerOctave;
 
-/// From a ten-thousandth of the smallest length to where a fraction of 1e-20 is left.
+/// From 1e-4 of the smallest length to a remaining fraction of 1e-20.
 std::shared_ptr<const ShareTable> make_shares(const Multipole& p) {
   ShareTable table;
   const double all = total(p, 0), slowest = std::hypot(p.decay, pi / height(p));
@@ -251,7 +252,7 @@ double sample_diffusion_distance(const Multipole& p, double share) {
   return p.mean_free_path * find_radius([&](double r) { return beyond(p, 0, r) / all; }, share, kLeast);
 }
 
-// By parts: what lies beyond R is the profile beyond R and pi R^2 R_d(R).
+// By parts: the integral beyond R is the profile beyond R plus pi R^2 R_d(R).
 double sample_chord_sphere_radius(const Multipole& p, double u, double) {
   const double all = total(p, 0);
   const auto falling = [&](double r) { return (beyond(p, 0, r) + pi * r * r * density(p, 0, r)) / all; };

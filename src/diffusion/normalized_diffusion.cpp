@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-// Mean free paths over d, by eta and by the fourth root of 1 - alpha': printed by bench_normalized_diffusion.
+// Mean free paths over d, by eta and by the fourth root of 1 - alpha': output of bench_normalized_diffusion.
 constexpr double kRefit[kRefitEtas.size()][kRefitAbsorptions] = {
     {0.775, 0.794, 0.873, 1.036, 1.253, 1.565, 1.893, 2.366, 2.972, 3.685, 4.515},    // eta 0.75
     {0.860, 0.880, 0.943, 1.107, 1.322, 1.618, 1.975, 2.407, 2.954, 3.589, 4.376},    // eta 1
@@ -21,7 +21,7 @@ constexpr double kRefit[kRefitEtas.size()][kRefitAbsorptions] = {
     {0.082, 0.113, 0.226, 0.398, 0.634, 0.914, 1.414, 2.176, 4.473, 10.307, 16.369},  // eta 3
 };
 
-// Between the table's places by straight lines of its logarithm, over that of eta.
+// Interpolates the table's logarithm linearly, in the logarithm of eta.
 double refitted_rate(double absorbed, double eta) {
   const double place = std::sqrt(std::sqrt(absorbed)) * double(kRefitAbsorptions - 1);
   const std::size_t column = std::min(std::size_t(place), kRefitAbsorptions - 2);
@@ -63,7 +63,7 @@ double sample_diffusion_distance(const NormalizedDiffusion& profile, double beyo
   return 3 * profile.d * std::log((1 + 1 / root + root) / (4 * beyond));
 }
 
-// The radius R of the spheres whose chords have the lengths of one exponential of R_d: exp(-r/L) / (2 pi r L) gives the
+// Radius R of spheres with chord lengths matching one exponential of R_d: exp(-r/L) / (2 pi r L) gives the
 // density (1 + R/L) exp(-R/L) / (2L), half an exponential, half a gamma of order 2.
 double sample_chord_sphere_radius(const NormalizedDiffusion& profile, double u, double v) {
   const bool narrow = u < 0.25;

@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kStep = std::numbers::ln10 / RadialTable::kPerDecade;  // step of ln r
-// Beyond these the reference is a dipole seen from afar, or nothing.
+// Range of the table; beyond it, the reference is a dipole's far field, or zero.
 constexpr double kManyWidths = 1e5, kManyDecays = 60;
 constexpr double kFarthest = 1400;  // knots: squares of such distances are in double's range
 
@@ -25,7 +25,7 @@ double slope(const RadialReference& reference, double r) {
   return -s * s / (1 + s) - 1 - 2 * r * r / (r * r + w2);
 }
 
-/// Second derivatives at the knots of the cubic spline through f whose ends are flat, steps of 1.
+/// Second derivatives at the knots of the cubic spline through f with zero slope at its ends, steps of 1.
 std::vector<double> spline_curvature(const std::vector<double>& f) {
   const std::size_t n = f.size();
   std::vector<double> right(n), pivot(n), m(n);
@@ -159,7 +159,7 @@ double RadialTable::radius_beyond(double share) const {
   const auto above =
       std::lower_bound(beyond_.begin(), beyond_.end(), share, [](double b, double s) { return b > s; });
   const std::size_t i = std::max<std::size_t>(1, std::size_t(above - beyond_.begin()));
-  // Newton within an interval, whose integrand varies little; bisected where it leaves it.
+  // Newton's method within an interval of nearly constant integrand; bisection if it leaves it.
   double low = double(i - 1), high = double(i), u = .5 * (low + high);
   for (int round = 0; round < 60; ++round) {
     const double off = beyond_[i] + ring_integral(u, double(i)) - share;

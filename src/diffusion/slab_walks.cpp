@@ -19,7 +19,7 @@ class WalkNumbers {
   std::uint64_t walk_, count_ = 0;
 };
 
-/// Cosine inside of light that comes from everywhere and enters.
+/// Samples the cosine inside of transmitted diffuse light.
 double entering_cosine(double eta, WalkNumbers& numbers) {
   for (;;) {
     const double cosine = std::sqrt(1 - numbers.next());

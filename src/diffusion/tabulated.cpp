@@ -24,10 +24,10 @@ namespace {
 
 constexpr std::size_t kKnots = RadialTable::kKnots;
 
-// Light that walks for longer leaves far away, where the table is the exact decay.
+// Longer walks exit far away, where the table equals the exact decay.
 constexpr std::uint64_t kMostCollisions = 1 << 16;
 constexpr double kMostWalks = 400000;
-// Darker media change the shape little (all but 2 % of the light is scattered once), and few walks return.
+// Darker media hardly change the shape (all but 2 % of the light is scattered once), and few walks return.
 constexpr double kMostAbsorbed = .97;
 constexpr std::size_t kPilotWalks = 1024;
 
@@ -46,7 +46,8 @@ SlabWalks walk(double absorbed, double eta) {
 }
 
 RadialReference reference_of(double absorbed, double eta) {
-  // The width is half the distance between the dipole's source, one mean free path deep, and its image: 1 + 2 A / 3.
+  // The width is half the distance between the dipole's source, one mean free path deep, and its image: 1 + 2
+  // A / 3.
   const double inside = std::min(.99, average_reflectance_inside(eta));
   return {decay_constant(absorbed), 1 + 2. / 3 * (1 + inside) / (1 - inside)};
 }
@@ -67,8 +68,8 @@ std::vector<double> reference_shares(const RadialReference& reference) {
   return shares;
 }
 
-/// f at the knots, so the reference times e^f has the walked shares: the least of the Poisson deviance of the
-/// rings and of penalties on first and second differences of f. Convex; by Newton's method.
+/// Solves for f at the knots, with the reference times e^f matching the walks: minimizes the Poisson deviance
+/// of the rings plus penalties on first and second differences of f. Convex; by Newton's method.
 class SmoothFit {
  public:
   SmoothFit(std::vector<double> reference, std::vector<double> walked, double variance)
@@ -93,8 +94,8 @@ class SmoothFit {
   }
 
  private:
-  // Expected sizes, as standard deviations, of f's first and second differences from knot to knot. Chosen by the walks'
-  // own noise (Tabulated.IsTheLongerWalk).
+  // Expected standard deviations of f's first and second differences between knots, chosen by the walks' own
+  // noise (Tabulated.IsTheLongerWalk).
   static constexpr double kSlope = .12, kBend = .03, kLongestStep = 2;
   static constexpr std::size_t kBand = 2;
   using Row = std::array<double, kBand + 1>;  // row of the symmetric matrix: diagonal, and to its right
@@ -140,7 +141,7 @@ class SmoothFit {
   }
 
   std::vector<double> reference_, walked_;
-  double variance_;  ///< a ring's share has this times the share as its variance
+  double variance_;  ///< variance of a ring's fraction, over the fraction
 };
 
 RadialTable walked_table(double absorbed, double eta) {
@@ -155,8 +156,7 @@ RadialTable walked_table(double absorbed, double eta) {
     sum += shares.back();
     variance += ring.share.error / total * (ring.share.error / total);
   }
-  shares.push_back(
-      std::max(0.0, 1 - sum));  // the rest beyond the last knot, walks that were cut off included
+  shares.push_back(std::max(0.0, 1 - sum));  // the rest beyond the last knot, unfinished walks included
   return {reference,
           SmoothFit(reference_shares(reference), std::move(shares), std::max(1e-12, variance / sum)).solve()};
 }
@@ -168,7 +168,7 @@ struct KnownShape {
   SharedShape shape;
 };
 
-/// The last shapes of this process.
+/// The most recent shapes of this process.
 class KnownShapes {
  public:
   SharedShape find(double absorbed, double eta) {
@@ -196,7 +196,7 @@ KnownShapes& known_shapes() {
 SharedShape shape_of(double absorbed, double eta) {
   if (SharedShape known = known_shapes().find(absorbed, eta)) return known;
   SharedShape shape;
-  // A thread that waits for its walks must not take up work that waits for this table.
+  // A thread waiting for its walks must not start tasks waiting for this table.
   tbb::this_task_arena::isolate(
       [&] { shape = std::make_shared<const ProfileShape>(ProfileShape{walked_table(absorbed, eta)}); });
   known_shapes().add(absorbed, eta, shape);

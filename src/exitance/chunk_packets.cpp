@@ -10,8 +10,8 @@
 namespace opaline {
 namespace {
 
-constexpr float kCoarseSolidAngle = 4;  // coarse solid angle of a node in the first guess, sr
-constexpr float kCoarseSize = 4;        // and how many of them the size of a packet holds
+constexpr float kCoarseSolidAngle = 4;  // solid angle of a node in the coarse estimate, sr
+constexpr float kCoarseSize = 4;        // packet sizes in the size of such a node
 
 Sphere bounds_of(std::span<const Query> queries, std::span<const std::uint32_t> order) {
   Vec3f low = queries[order[0]].position, high = low;

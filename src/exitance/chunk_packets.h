@@ -32,9 +32,8 @@ struct ChunkPackets {
   void fill(std::span<const Query> queries, std::span<const std::uint32_t> order, const PacketCut& cut);
 };
 
-/// A coarse exitance of each packet, which errors are measured against: at its middle, or the least of its
-/// points' where they lie so far apart that one does not speak for the others. The near field is guessed from
-/// the far one, as if the irradiance were even.
+/// Coarse exitance of each packet as the scale of errors: at its middle, or the minimum over its points if
+/// they are far apart. The near field follows from the far one, for a uniform irradiance.
 void guess_exitance(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
                     const ChunkPackets& packets, std::span<RgbF> guesses);
 

@@ -19,27 +19,27 @@ constexpr std::size_t kRuns = 16,
                       kRun = 4;  // samples per trial sum, next to samples in octree order
 constexpr std::size_t kRoughnessTrials = 512;
 constexpr double kFineTolerance = 1.5e-3;
-// Samples so near each other, in spacings, are neighbours.
+// Largest distance of neighbours, in spacings.
 constexpr float kNeighbours = 1.6f;
-// A neighbour whose normal has a cosine below kCrease lies beyond a crease if those above have a mean of kFlat;
-// else the samples are too few for the curvature.
+// Creases: a neighbour with a normal's cosine below kCrease is on another face if the other neighbours' mean
+// cosine is at least kFlat; otherwise the samples are too sparse for the curvature.
 constexpr float kCrease = 0.7f;
 constexpr double kFlat = 0.99;
-// Beside an edge of a shadow the irradiance of neighbours differs by kStep or more. Of a light without area it
-// is no error there, for each sample has the mean over its cell: kStepLeft of the difference counts. A
-// neighbour at a steeper sine than kStacked belongs to another sheet.
+// Shadow edges: neighbours' irradiance differs by kStep or more. Samples store the mean over their cell, so
+// for lights without area only the fraction kStepLeft of the difference is an error. A neighbour at a steeper
+// sine than kStacked belongs to another sheet.
 constexpr float kStep = 0.5f, kStepLeft = 0.2f, kStacked = 0.3f;
-// Neighbours in a line tell no slope: their moments' determinant over the squared trace is less.
+// Least determinant of neighbours' moments over the squared trace; collinear neighbours define no slope.
 constexpr float kDegenerate = 1e-3f;
-// Where creases are all over, errors are so much larger than neighbours show; in part where fewer than
-// kManyCreases of the samples are beside one. On smooth surfaces they are smaller, down to kLeast, but for
-// shadows, which few of the trials meet: kRough times the roughness at least, up to 1.
+// Scale of errors: kAtCreases at creases, less with a fraction of samples beside creases below kManyCreases.
+// On smooth surfaces down to kLeast, but at least kRough times the roughness, up to 1, as few trials meet a
+// shadow edge.
 constexpr double kAtCreases = 1.6, kManyCreases = 0.02, kLeast = 0.03, kMost = 10, kRough = 4;
-// Fraction of the tolerance: mean error of the nodes, minimum and maximum.
+// Mean error of the nodes over the tolerance, minimum and maximum.
 constexpr double kLeastHierarchy = 0.005, kMostHierarchy = 0.15;
-// Factor of the estimate from solid angles: mean error of the nodes of `classic`, minimum and maximum.
+// Mean error of the nodes of `classic` over the estimate from solid angles, minimum and maximum.
 constexpr double kLeastFlattened = 0.02, kMostFlattened = 4;
-// Darker than this part of the brightest, errors are absolute.
+// Fraction of the brightest exitance below which errors are absolute.
 constexpr float kDark = 1e-3f;
 
 struct Roughness {
@@ -51,11 +51,11 @@ struct Roughness {
 struct Neighbours {
   RgbF mean{}, low{}, high{};  // irradiance: weighted by nearness; with the sample's own
   float weights = 0;
-  double cosines = 0, same_face = 0;  // sum over those of the sample's own face, and their number
+  double cosines = 0, same_face = 0;  // over samples on the sample's own face: sum and number
   bool other_face = false, stacked = false;
 
   bool creased() const { return other_face && cosines >= kFlat * same_face; }
-  /// On a surface that has no other sheet near.
+  /// True at a shadow edge, on a surface without other sheets nearby.
   bool has_step(std::size_t c) const { return !creased() && !stacked && low[c] < kStep * high[c]; }
 };
 
@@ -86,7 +86,7 @@ Neighbours neighbours_of(const Octree& tree, std::uint32_t sample, float spacing
   return found;
 }
 
-/// Adds what a sample is off its neighbours' mean.
+/// Adds the deviation of a sample from its neighbours' mean.
 void add_roughness(const Octree& tree, std::uint32_t sample, float spacing,
                    const std::array<float, 3>& from_points, Roughness& sums) {
   const Neighbours near = neighbours_of(tree, sample, spacing);
@@ -107,7 +107,7 @@ struct Trials {
   std::vector<RgbF> irradiance;
 };
 
-/// From a sample to somewhere in the disc standing for its cell, in the tangent plane's axes.
+/// Random step from a sample within the disc of its cell, in the tangent plane's axes.
 struct Step {
   Vec3f u, v;
   float along_u, along_v;
@@ -146,7 +146,7 @@ RgbF change_of_irradiance(const Octree& tree, std::uint32_t sample, const Step& 
   return slope_u * step.along_u + slope_v * step.along_v;
 }
 
-// Not at the samples: each stands in the middle of a hole between the others, where sums are low.
+// Queries avoid the samples: each is in the middle of a gap between the others, where sums are low.
 Trials trials_beside_samples(const Octree& tree, float spacing) {
   Trials trials;
   const std::size_t n = tree.samples.size(), run = std::min(kRun, n);
@@ -168,7 +168,7 @@ struct Differences {
   double wider = 0, finer = 0, expected = 0;
 };
 
-/// By the walk of `classic`; their errors are those of its nodes alone.
+/// Evaluates with `classic` and the errors of its nodes alone.
 std::vector<Exitance> classic_sums(const CloudErrorInput& input, const Trials& trials) {
   return evaluate({.octree = input.octree,
                    .kernel = input.kernel,
@@ -179,7 +179,7 @@ std::vector<Exitance> classic_sums(const CloudErrorInput& input, const Trials& t
                    .cloud = {.scale = {}, .other_sheets = 0}});
 }
 
-/// How far `classic` sums are off finer ones, over what they expect of their nodes alone; 1 without nodes.
+/// Error of `classic` against finer sums, over the estimate of its nodes' error; 1 without nodes.
 float flattened_part(const std::vector<Exitance>& fine, const std::vector<Exitance>& classic, std::size_t c) {
   double off = 0, expected = 0;
   for (std::size_t i = 0; i < fine.size(); ++i) {
@@ -231,7 +231,7 @@ CloudError tell_cloud_error(const CloudErrorInput& input) {
                      .instruction_set = input.instruction_set,
                      .cloud = none});
   };
-  // Each is too few sums to occupy more than one thread.
+  // Each evaluates too few queries for more than one thread.
   std::vector<Exitance> fine, coarse, wide, classic;
   parallel_chunks(4, 1, [&](std::size_t trial, std::size_t, std::size_t) {
     if (trial == 0) fine = sums(input.kernel, fine_tolerance);

@@ -11,7 +11,7 @@ namespace opaline {
 namespace {
 
 constexpr double kMostSegments = 1024;
-// Facets share a vertex whose mean normal is within about 37 degrees of theirs.
+// Least cosine between a facet's normal and a vertex's mean normal for sharing the vertex, about 37 degrees.
 constexpr float kSmooth = 0.8f;
 
 Vec3f facet_normal(const Mesh& mesh, std::uint32_t triangle) {
@@ -110,11 +110,11 @@ class MeshCutter {
   double longest_;
   SurfaceCache& cache_;
   std::vector<Vec3f>& normals_;
-  std::vector<std::uint32_t> shared_;  // vertex of the cache, one a vertex of the mesh
+  std::vector<std::uint32_t> shared_;  // vertex of the cache, one per vertex of the mesh
   bool smooth_;
   std::vector<Vec3f> means_;  // mean normals of the facets at each vertex, if not smooth
   Vec3f facet_;
-  std::map<std::array<std::uint32_t, 4>, std::uint32_t> edges_;  // vertices on edges that were cut
+  std::map<std::array<std::uint32_t, 4>, std::uint32_t> edges_;  // vertices on subdivided edges
 };
 
 }  // namespace

@@ -15,18 +15,18 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kTogether = 4;  // packets that go down the tree side by side
-// Third-order terms of a node's series that the second moment leaves, for the shapes that nodes have, and how
-// the errors of many nodes add up: measured, so the promise holds (test_dual_tree).
+constexpr std::size_t kTogether = 4;  // packets descending together
+// Factor on error bounds, for the third-order terms left by second moments, with typical shapes of nodes, and
+// for the sum of many nodes' errors. test_dual_tree checks the resulting bound.
 constexpr float kErrorShare = 0.7f;
-// Below this fraction of the p99 of all queries' exitance (under the promise's, for guesses run high), or this
-// one of the brightest possible, a relative error is not asked for.
+// Exitance below which errors are absolute, over the p99 of all queries (below the bound's 1e-3, as estimates
+// are high), and over the largest possible exitance.
 constexpr float kDark = 2e-4f, kDarkest = 1e-8f;
 
 // Node lists of a packet.
 struct PacketLists {
   Cluster cluster;
-  std::vector<std::uint32_t> expanded, far, near;  // by its expansion, as points, sample by sample
+  std::vector<std::uint32_t> expanded, far, near;  // by expansion, as points, sample by sample
 
   void start(const Cluster& own) {
     cluster = own;
@@ -34,7 +34,7 @@ struct PacketLists {
   }
 };
 
-// Which of kTogether packets want a node, as bits, for a block of nodes.
+// Bit masks of the packets opening each node of a block.
 struct alignas(16) Takers {
   std::array<std::uint8_t, kLanes> packets;
 
@@ -47,7 +47,7 @@ struct alignas(16) Takers {
 
 using Guesses = std::array<RgbF, PacketCut::kMost>;  // exitance estimates of a chunk's packets
 
-// Up to kChunk queries lying near each other.
+// Up to kChunk neighbouring queries.
 class Chunk {
  public:
   Chunk(const EvaluateInput& input, const LaneKernels& kernels, std::span<const std::uint32_t> order,
@@ -62,7 +62,7 @@ class Chunk {
     chunk_.fill(input.queries, order, cut);
   }
 
-  // A coarse exitance of each packet.
+  // Coarse exitance of each packet.
   void guess(Guesses& guesses) const { guess_exitance(input_, lane_input_, kernels_, chunk_, guesses); }
 
   // dark: exitance below which errors are absolute
@@ -80,7 +80,7 @@ class Chunk {
   }
 
  private:
-  // Errors that a node may have for packets [first, last), per channel.
+  // Allowed error of a node for packets [first, last), per channel.
   RgbF allowed_error(std::size_t first, std::size_t last) const {
     RgbF least(std::numeric_limits<float>::infinity());
     for (std::size_t p = first; p < last; ++p) least = component_min(least, guess_[p]);
@@ -105,7 +105,7 @@ class Chunk {
     return cluster;
   }
 
-  // takers: bits of the packets that want the children of a node
+  // takers: bits of the packets opening the node's children
   void open(std::uint32_t i, std::uint32_t takers) {
     const std::uint32_t end = input_.octree.first_child[i + 1];
     for (std::uint32_t k = input_.octree.first_child[i]; k < end; ++k) {
@@ -117,8 +117,8 @@ class Chunk {
     }
   }
 
-  // Calls sift(block, takers, count) for the candidates, which all packets take, and for the queue until it
-  // is empty.
+  // Calls sift(block, takers, count) for the candidates, with all packets, and for the queue until it is
+  // empty.
   template <class Sift>
   void sift_all(std::span<const SourceBlock> candidates, std::size_t count, const Sift& sift) {
     queue_.clear();
@@ -151,9 +151,9 @@ class Chunk {
     return all;
   }
 
-  // Puts nodes far from packets [first, last) into their expansion, and hands the others down. candidates:
-  // `count` nodes; inherited: what is known of them already, around `center`
-  // rest_blocks: for this call, and for those that it makes
+  // Adds nodes far from packets [first, last) to their expansion, and passes the others down.
+  // candidates: `count` nodes; inherited: expansion of the nodes above, around `center`; rest_blocks: scratch
+  // of this and nested calls
   void refine(std::span<std::vector<SourceBlock>> rest_blocks, std::size_t first, std::size_t last,
               std::span<const SourceBlock> candidates, std::size_t count, const Expansion& inherited,
               const Vec3f& center) {
@@ -218,8 +218,8 @@ class Chunk {
     }
   }
 
-  // Adds to packets [first, last), kTogether at most, all that is left: each its own way, but what one opens
-  // is opened once.
+  // Adds all remaining nodes to packets [first, last), kTogether at most. Packets descend individually, but
+  // share opened nodes.
   void refine_packets(std::size_t first, std::size_t last, std::span<const SourceBlock> candidates,
                       std::size_t count, const Expansion& inherited, const Vec3f& center) {
     const std::size_t packets = last - first;
@@ -256,10 +256,10 @@ class Chunk {
   std::array<std::vector<SourceBlock>, 2> rest_blocks_;
   std::array<PacketLists, kTogether> lists_;
   std::vector<std::uint32_t> rest_, queue_, wholes_;
-  std::vector<std::uint8_t> takers_;  // consumers of the queue
+  std::vector<std::uint8_t> takers_;  // packets of the queue's nodes
 };
 
-// Exitance, per channel, below which errors are held against it instead of the query's own.
+// Exitance below which errors are absolute, per channel.
 RgbF darkest(const EvaluateInput& input, std::span<const PacketCut> cuts, std::span<const Guesses> guesses) {
   RgbF dark;
   std::vector<float> values;

@@ -126,8 +126,8 @@ void walk(const EvaluateInput& input, const Query& query, Gather& gather) {
   }
 }
 
-// The fraction of the irradiance at the point itself for which it and the samples' mean around, weighted by
-// (1 - t^2)^2 with mean square radius h^2/4, have the near kernel's mean square radius.
+// Weight of the point's own irradiance. Its mixture with the samples' mean (weight (1 - t^2)^2, mean square
+// radius h^2/4) has the near kernel's mean square radius.
 double own_share(const ChannelProfile& profile, double h) {
   double flux = 0, moment = 0;
   constexpr int kRings = 1000;
@@ -142,8 +142,8 @@ double own_share(const ChannelProfile& profile, double h) {
 // SplitKernel::own_irradiance; near: the near field's fraction of the total.
 float own_irradiance(const ChannelProfile& profile, double h, double near, NearIrradiance wanted) {
   if (wanted != NearIrradiance::mixed) return wanted == NearIrradiance::point ? 1.0f : 0.0f;
-  // Where little of the light depends on it the irradiance at the point is not worth its shadow rays; faded,
-  // for spacings differ a little with the seed.
+  // Fades to zero where little light depends on it: the irradiance at the point is then not worth its shadow
+  // rays, and spacings vary with the seed.
   const double own = own_share(profile, h), t = std::clamp((own * near - 0.02) / 0.02, 0.0, 1.0);
   return float(own * t * t * (3 - 2 * t));
 }
@@ -161,7 +161,7 @@ Exitance evaluate_one(const EvaluateInput& input, std::size_t q) {
 
 SplitKernel make_split_kernel(const DiffuseProfile& profile, double spacing, double extent, bool split,
                               NearIrradiance near_irradiance) {
-  // Closer than a quarter of the spacing, R_d w is negligible; without the split R_d is held there.
+  // Closer than a quarter of the spacing, R_d w is negligible; without the split, R_d is constant there.
   const double r_min = spacing / 4, radius = 2.5 * spacing;
   SplitKernel kernel{KernelTable(profile, r_min, std::max(extent, 2 * radius)),
                      split,

@@ -16,9 +16,9 @@
 namespace opaline {
 namespace {
 
-// Fraction of the exitance on both sides beyond the reach that is neglected.
+// Neglected fraction of both sides' exitance beyond the reach.
 constexpr double kNeglected = 3e-4;
-// Area over squared distance of a node standing as a point.
+// Maximum area over squared distance of a node as a point.
 constexpr float kSolidAngle = 0.06f;
 constexpr float kNarrow = 0.85f;  // cosine of such a node's cone
 
@@ -27,7 +27,7 @@ double thickness_of(const ChannelProfile& profile) {
   return plate.thickness * plate.mean_free_path;
 }
 
-// The smallest distance beyond which what the two sides differ by is neglected.
+// Smallest distance beyond which the difference of both sides is negligible.
 double reach_of(const ChannelProfile& profile, double r_min, double r_max) {
   const double both =
       total_diffuse_reflectance(profile) + total_diffuse_transmittance(profile, thickness_of(profile));
@@ -41,7 +41,7 @@ double reach_of(const ChannelProfile& profile, double r_min, double r_max) {
   return std::min(r_max, r * step);
 }
 
-// Queries following each other, with bounds on where they lie and face.
+// Successive queries, with bounds of their positions and normals.
 struct QueryBounds {
   Vec3f low, high, axis;
   float cosine = 0, sine = 1;  // cosine and sine of the angle around the axis; cosine 0: any direction
@@ -61,10 +61,10 @@ struct QueryBounds {
   }
 };
 
-enum class Sheets { same, other, both };  // both: or not known
+enum class Sheets { same, other, both };  // both: mixed or unknown
 
-// Sheets of all normals of a cone, seen from all queries: the angle between them is at most that of the axes and both cones'
-// angles together, and beyond 120 degrees it is another sheet (same_sheet).
+// Sheets of all normals in a cone, seen from all queries: the angle to them is at most that of the axes plus
+// both cones' half-angles; beyond 120 degrees it is another sheet (same_sheet).
 Sheets sheets_of(const QueryBounds& queries, const Vec3f& axis, float cosine, float sine) {
   if (cosine == 0 || queries.cosine == 0) return Sheets::both;
   const float c = cosine * queries.cosine - sine * queries.sine,  // cosine and sine of the sum of both angles
@@ -77,7 +77,7 @@ Sheets sheets_of(const QueryBounds& queries, const Vec3f& axis, float cosine, fl
   return Sheets::both;
 }
 
-// Sum over neighbouring queries: nodes of other sheets taken as points, and samples.
+// Sum over neighbouring queries: nodes on other sheets as points, and samples.
 class CrossingLight {
  public:
   CrossingLight(const EvaluateInput& input, std::span<const Query> queries)
@@ -96,7 +96,7 @@ class CrossingLight {
       const NormalCone cone = octree_.normal_cones.empty() ? NormalCone{} : octree_.normal_cones[i];
       const Sheets sheets = sheets_of(bounds, cone.axis, cone.cosine, cone.sine);
       if (gap2 <= reach2_ && sheets != Sheets::same) {
-        // A node lying across the border of 120 degrees is of the sheet of its middle.
+        // A node across the limit of 120 degrees belongs to the sheet of its mean normal.
         const bool is_point = gap2 > 0 && node.flux[3] < kSolidAngle * gap2 && cone.cosine > kNarrow;
         if (!is_point && !node.leaf) {
           ++i;
@@ -175,7 +175,7 @@ std::shared_ptr<const FarSide> make_far_side(const DiffuseProfile& profile, doub
 }
 
 void add_far_side(const EvaluateInput& input, std::span<Exitance> result) {
-  // Few enough to lie together in a picture.
+  // Few enough to be neighbours in an image.
   constexpr std::size_t kTogether = 16;
   parallel_chunks(input.queries.size(), kTogether, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<Query> queries;

@@ -12,8 +12,9 @@ namespace opaline {
 /// r_min, r_max: as those of KernelTable.
 std::shared_ptr<const FarSide> make_far_side(const DiffuseProfile& profile, double r_min, double r_max);
 
-/// To sums that took every sample by R_d, adds T - R_d of those of other sheets, as far as the two differ. Nodes that
-/// are of another sheet as a whole stand as points where they are small from there (Octree::normal_cones).
+/// Corrects sums over all samples by R_d for transmission: adds T - R_d for samples on other sheets, where
+/// the two differ. Nodes entirely on another sheet are points if small at their distance
+/// (Octree::normal_cones).
 void add_far_side(const EvaluateInput& input, std::span<Exitance> result);
 
 }  // namespace opaline

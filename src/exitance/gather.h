@@ -31,19 +31,19 @@ class Gather {
     const __m128 k = d[0] == d[1] && d[1] == d[2] ? kernel_.table(d[0]) : kernel_.table(d[0], d[1], d[2]);
     const __m128 contribution = _mm_mul_ps(k, _mm_load_ps(node.flux.data()));
     accumulate(contribution);
-    // The error of a point in place of a patch is proportional to the patch's solid angle.
+    // The error of a point for a patch is proportional to the patch's solid angle.
     const __m128 solid_angle = _mm_div_ps(_mm_set1_ps(node.flux[3]), r2);
     flattened_ = _mm_add_ps(flattened_, _mm_mul_ps(contribution, solid_angle));
   }
 
   void add_samples(std::uint32_t begin, std::uint32_t end) {
-    // Float sums of a few terms, taken over to double: a sum over all samples must not drown its own tail.
+    // Partial sums in float, totals in double: a sum over all samples would lose its tail in float.
     constexpr std::uint32_t kTerms = 16;
     for (std::uint32_t first = begin; first < end; first += kTerms)
       accumulate(sum_samples(first, std::min(end, first + kTerms)));
   }
 
-  /// given: entered irradiance at the query, or null to interpolate every channel.
+  /// given: transmitted irradiance at the query, or null to interpolate every channel.
   Exitance result(const RgbF* given) const {
     alignas(16) double sum[4];
     _mm_store_pd(sum, low_);
@@ -55,8 +55,8 @@ class Gather {
     _mm_store_ps(flattened, flattened_);
     _mm_store_ps(near_flux, near_flux_);
     _mm_store_ps(near_squares, near_squares_);
-    // A patch of a power law 1/r^3 gives more than its middle by 3/8 of its solid angle; measured on
-    // surfaces: a fifth, and what nodes on all sides leave out partly cancels.
+    // Error of a point for a patch over the patch's solid angle: 3/8 for a power law 1/r^3 above a plane,
+    // less on surfaces, where errors of nodes on opposite sides partly cancel.
     constexpr float kFlattened = 0.12f;
     PointSums<float> sums;
     sums.near_area = near_weight_;
@@ -101,8 +101,8 @@ class Gather {
     return sum;
   }
 
-  // Notes a sample within h for the irradiance around the point and returns the far weight of its kernel.
-  // Samples of another sheet are no neighbours on the surface: their kernel stays whole.
+  // Adds a sample within h to the irradiance around the point, and returns the far weight of its kernel, the
+  // whole kernel on another sheet.
   float add_near(std::uint32_t i, float r2, __m128 flux) {
     if (!same_sheet(octree_.normals[i], query_.normal)) return 1;
     const float t2 = r2 / near2_, w = (1 - t2) * (1 - t2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a surface cache has its nodes.
+// Nodes of a surface cache.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,27 +12,24 @@
 namespace opaline {
 namespace {
 
-// Shares of the tolerance: of the evaluation at the nodes, and of what interpolation may be off by its own
-// estimate.
+// Fractions of the tolerance: for the evaluation at the nodes, and for the estimated interpolation error.
 constexpr double kEvaluationShare = 0.6, kInterpolationShare = 0.4;
-// Rise error of what slopes add to the middle of an edge, and of what a lattice's predecessor missed at its new nodes:
-// the part that interpolation still misses (measured, test_surface_cache). Patches whose nodes may
-// not come closer are left to points for the worst alone: with .2 skin at 2048 x 2048 takes 1.75 times as long.
+// Remaining fractions of the interpolation error (test_surface_cache): of the slopes' contribution at the
+// middle of an edge; of the previous lattice's error at new nodes; and of the same at the finest lattice,
+// where only large errors leave a patch to points.
 constexpr float kRiseError = 0.6f, kRest = 0.6f, kRestAtFinest = 0.05f;
-// The cosine between normals of two vertices, between which slopes tell nothing. With them trusted there and on
-// patches of any length the worst p99 of four foreign meshes of 500 to 32,000 triangles was 2.2 % in even light
-// at a tolerance of .5 %; it is .66 %, and .47 % without the ogre, whose face has wrinkles finer than its near field.
+// Least cosine between two vertices' normals for using slopes between them; README.md has the comparison.
 constexpr float kBent = 0.95f;
-// In near-field radii, over which the far kernel varies: patches longer than kReach could hide what lies
-// between their vertices; nodes closer than kFinest see the noise of the samples; a
-// shadow's edge, as the near field blurs it, shows at vertices closer than kBlur.
+// In near-field radii: longest patch, as longer ones could hide variation of the far kernel; smallest
+// distance of nodes, as closer ones resolve the samples' noise; largest distance of vertices that detects a
+// shadow edge blurred by the near field.
 constexpr double kReach = 2, kFinest = 0.25, kBlur = 0.5;
 
-// Two vertices between which the light depending on the irradiance at the place itself changes by more
-// than twice this part of all light may have a shadow's edge between them.
+// Change of the own contribution between two vertices, over the sum of their exitance, above which a shadow
+// edge may be between them.
 constexpr float kJump = 0.02f;
 
-// A node's place: k of n segments along the edge of two vertices, for all patches there, or inside a patch.
+// Position of a node: k of n segments along the edge of two vertices, shared by patches, or inside a patch.
 struct PlaceKey {
   std::uint64_t where = 0;
   std::uint32_t i = 0, j = 0, n = 0;
@@ -59,10 +56,10 @@ PlaceKey inner_key(std::uint32_t patch, std::uint32_t i, std::uint32_t j, std::u
   return {patch, i >> common, j >> common, n >> common};
 }
 
-// A patch whose vertices alone do not tell.
+// A patch not resolved by its vertices alone.
 struct Refined {
   std::uint32_t patch, segments;
-  bool edge;  // a shadow's may run through it
+  bool edge;  // may contain a shadow edge
   std::vector<std::uint32_t> nodes;
 };
 
@@ -99,8 +96,7 @@ class Builder {
   }
 
  private:
-  // At the queries noted since the last time; without irradiance of their own, which leaves that part out
-  // until it is added. doubts: as AddOwnLight's
+  // Evaluates the queued queries, with own irradiance zero until it is added. doubts: as in AddOwnLight
   std::vector<Exitance> evaluated(std::vector<PlaceDoubt>& doubts) {
     const std::vector<RgbF> dark(queries_.size());
     std::vector<Exitance> result = evaluate({.octree = input_.octree,
@@ -138,7 +134,7 @@ class Builder {
     }
   }
 
-  // A vertex's slope is the mean of its patches', weighted by area.
+  // Slope of a vertex: mean over its patches, weighted by area.
   void set_slopes() {
     std::vector<float> areas(cache_.vertices.size());
     for (const SurfaceCache::Patch& patch : cache_.patches) {
@@ -205,7 +201,7 @@ class Builder {
     return is_too_much(rise_between(a, b) * kRiseError, middle, noise);
   }
 
-  // Slopes say nothing of an edge half way: they are the same on both sides.
+  // Slopes cannot detect an edge midway: they are equal on both sides.
   bool may_hide_shadow_edge(std::uint32_t ia, std::uint32_t ib) const {
     if (vertex_doubts_[ia].beside_edge || vertex_doubts_[ib].beside_edge) return true;
     if (!input_.add_own_light) return false;
@@ -255,7 +251,7 @@ class Builder {
         normalized(normals_[a] * w + normals_[b] * u + normals_[c] * v)};
   }
 
-  // Prediction of the patch at an odd node of its lattice, without that node.
+  // Interpolated value at an odd node of a patch's lattice, from the even nodes.
   RgbF predicted(const Refined& r, std::uint32_t i, std::uint32_t j) const {
     const float u = float(i) / float(r.segments), v = float(j) / float(r.segments);
     if (r.segments == 2) return between_vertices(cache_, cache_.patches[r.patch], u, v).exitance;
@@ -273,11 +269,11 @@ class Builder {
     return cache_.nodes[r.nodes[lattice_index(r.segments, i, j)]];
   }
 
-  // Keeps the lattice, doubles it if its nodes were ill predicted by those of the one before, or leaves the
-  // patch to points if they were and may not come closer.
+  // Keeps the lattice, doubles it if the previous one predicts its nodes badly, or leaves the patch to points
+  // if it does at the finest lattice.
   bool wants_more(Refined& r) {
     const bool may_grow = longest_side(r.patch) > float(kFinest) * input_.kernel.radius * float(r.segments);
-    // The one new node of two segments may lie in the middle of a shadow's edge.
+    // The one new node of two segments may be in the middle of a shadow edge.
     const bool may_hide_edge = r.edge && r.segments == 2;
     if (is_too_sharp(r) || (!may_grow && is_ill_predicted(r, kRestAtFinest))) {
       cache_.patches[r.patch].lattice = SurfaceCache::kLeftToPoints;
@@ -306,7 +302,7 @@ class Builder {
     return std::ranges::any_of(r.nodes, [&](std::uint32_t node) { return node_doubts_[node].is_too_sharp; });
   }
 
-  // rest: the part of the predecessor's error that remains
+  // rest: the remaining part of the predecessor's error
   bool is_ill_predicted(const Refined& r, float rest) const {
     for (std::uint32_t j = 0; j <= r.segments; ++j)
       for (std::uint32_t i = 0; i + j <= r.segments; ++i) {
@@ -323,7 +319,7 @@ class Builder {
   std::vector<Vec3f> normals_;  // normals of its vertices
   std::vector<Query> queries_;  // to evaluate: of vertices at first, then of nodes
   std::vector<PlaceDoubt> vertex_doubts_, node_doubts_;
-  std::vector<std::uint32_t> new_nodes_;  // where the latter go
+  std::vector<std::uint32_t> new_nodes_;  // their indices
   std::unordered_map<PlaceKey, std::uint32_t, PlaceHash> places_;
   RgbF floor_{};
 };

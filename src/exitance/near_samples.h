@@ -9,12 +9,12 @@
 
 namespace opaline {
 
-/// Entered irradiance of a sample over the tree's flux unit.
+/// Transmitted irradiance of a sample over the tree's flux unit.
 inline RgbF irradiance_of(const TreeSample& s) {
   return RgbF{s.flux[0], s.flux[1], s.flux[2]} / s.area;
 }
 
-/// Calls use(sample) for all of the leaves within a distance of a point.
+/// Calls use(sample) for all samples of the leaves within a distance of a point.
 template <class Use>
 void for_each_near(const Octree& tree, const Vec3f& p, float distance, const Use& use) {
   for (std::uint32_t i = 0; i < tree.nodes.size();) {

@@ -28,7 +28,7 @@ auto content(const FluxSample& s) {
                   s.irradiance.z, s.normal.x, s.normal.y, s.normal.z);
 }
 
-// Samples along the Morton curve; equal keys in the order of their content, so input order has no say.
+// Sorts the samples along the Morton curve; content breaks ties, so the input order has no effect.
 std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
   Vec3f low = samples[0].position, high = low;
   for (const FluxSample& s : samples) widen(low, high, s.position);
@@ -54,7 +54,7 @@ std::vector<Keyed> morton_order(std::span<const FluxSample> samples) {
   return order;
 }
 
-// Sums that define a node, in double: per lane R, G, B, area.
+// Sums of a node, in double: per lane R, G, B, area.
 struct Sums {
   std::array<double, 4> weight{};
   std::array<Vec3d, 4> moment{};
@@ -75,8 +75,8 @@ struct Sums {
   }
 };
 
-// Writes the nodes in depth-first order. The tree is cut into parts that are counted, and then built, in
-// parallel; the nodes above them are summed up last. The cut depends on the samples alone.
+// Writes the nodes in depth-first order. Parts of the tree are counted and built in parallel; the nodes above
+// them are summed last. The division depends on the samples alone.
 class Builder {
  public:
   Builder(Octree& tree, std::vector<std::uint64_t> keys) : tree_(tree), keys_(std::move(keys)) {}
@@ -100,7 +100,7 @@ class Builder {
       std::uint32_t next = part.index;
       if (!part.is_inner) part.sums = build(part.begin, part.end, part.level, next);
     });
-    // Children stand after their parents.
+    // Children follow their parents.
     for (std::size_t i = parts_.size(); i-- > 0;) {
       const Part& part = parts_[i];
       if (part.is_inner)
@@ -111,16 +111,16 @@ class Builder {
   }
 
  private:
-  static constexpr std::uint32_t kPart = 4096;  // samples that one thread takes at a time
+  static constexpr std::uint32_t kPart = 4096;  // samples of one task
   static constexpr std::size_t kNoParent = ~std::size_t(0);
 
   // A subtree, or one inner node above subtrees; in depth-first order.
   struct Part {
     std::uint32_t begin, end;  // its samples
     int level;
-    std::size_t parent, past;  // the part above, the first one not below
+    std::size_t parent, past;  // the part above, the first one outside this
     bool is_inner;
-    std::uint32_t nodes = 0, index = 0;  // how many, and the first of them
+    std::uint32_t nodes = 0, index = 0;  // number, and index of the first
     Sums sums{};
   };
 
@@ -160,7 +160,7 @@ class Builder {
     return sums;
   }
 
-  // Levels at which all samples share one child add nothing.
+  // Skips levels with all samples in one child.
   int branching_level(std::uint32_t begin, std::uint32_t end, int level) const {
     while (level < kLevels && digit(begin, level) == digit(end - 1, level)) ++level;
     return level;
@@ -204,7 +204,7 @@ class Builder {
     return sums;
   }
 
-  // About the mean; what rounding leaves below zero on the diagonal is zero.
+  // Central moments; negative rounding errors on the diagonal become zero.
   static std::array<float, 6> central_moment(const Sums& sums) {
     double weight = sums.weight[0] + sums.weight[1] + sums.weight[2];
     Vec3d first = sums.moment[0] + sums.moment[1] + sums.moment[2];
@@ -235,7 +235,7 @@ class Builder {
       node.flux[c] = float(sums.weight[c]);
     }
     node.center = Vec3f(middle);
-    // Up to the farther side of the rounded middle.
+    // Half size up to the farther side of the rounded middle.
     node.half = component_max(sums.high - node.center, node.center - sums.low);
     node.spread = central_moment(sums);
     node.skip = skip;
@@ -306,7 +306,7 @@ Octree build_octree(std::vector<FluxSample> samples) {
       tree.normals[i] = s.normal;
     }
   });
-  std::vector<FluxSample>().swap(samples);  // the nodes take their memory, and the order's
+  std::vector<FluxSample>().swap(samples);  // frees memory for the nodes
   std::vector<std::uint64_t> keys(order.size());
   std::ranges::transform(order, keys.begin(), &Keyed::key);
   std::vector<Keyed>().swap(order);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the sums at query points to their exitance: F is a float, or Points4.
+// Exitance from the sums at query points: F is a float, or Points4.
 #pragma once
 
 #include <xmmintrin.h>
@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-/// A number of each of four points.
+/// Four points' values.
 typedef float Points4 __attribute__((vector_size(16)));
 
 /// Sums at one point, per channel, in flux units (Octree::flux_unit) per mm^2.
@@ -50,7 +50,7 @@ inline Points4 root(Points4 f) {
   return (Points4)_mm_sqrt_ps((__m128)f);
 }
 
-/// SplitKernel::border at a place between its rows.
+/// SplitKernel::border interpolated between rows.
 inline std::array<float, 3> border_share(const SplitKernel& kernel, float place) {
   const std::size_t row = std::min(std::size_t(place), SplitKernel::kBorderRows - 2);
   const float t = place - float(row);
@@ -68,14 +68,14 @@ inline std::array<Points4, 3> border_share(const SplitKernel& kernel, Points4 pl
   return share;
 }
 
-/// The part of the near field that is there, per channel. Half of a plane's area or less: a border, a corner;
-/// more than all of it: a crease, whose excess the near field of steep profiles does not see.
+/// Fraction of a plane's near field present, per channel. At half of a plane's area or less: a border or
+/// corner; above all of it: a crease, ignored because steep profiles do not see the excess.
 template <class F>
 std::array<F, 3> surface_share(const SplitKernel& kernel, F near_area) {
   // Integral of the weight (1 - r^2/h^2)^2 over a plane.
   const float plane = float(std::numbers::pi) * kernel.radius * kernel.radius / 3;
   const F area = near_area / plane;
-  // A few per cent short of a whole plane is the noise of the samples' sum.
+  // Up to a few per cent below a whole plane are noise of the samples' sum.
   constexpr float kNoise = 1.03f;
   const F place =
       smaller(larger((area - 0.5f) * 2 * kNoise, F{}), F{} + 1) * float(SplitKernel::kBorderRows - 1);
@@ -84,13 +84,13 @@ std::array<F, 3> surface_share(const SplitKernel& kernel, F near_area) {
   return share;
 }
 
-// A normal distribution's standard deviation over its mean deviation.
+// Standard deviation over mean absolute deviation of a normal distribution.
 inline constexpr float kDeviationOfMean = 1.2533f;
-// A sample stands off its cell's middle by this fraction of the distance over which neighbours differ.
+// Offset of a sample from its cell's middle, over the distance on which neighbours differ.
 inline constexpr float kOffset = 0.2f;
 
-/// The squared distance of a sample of another sheet once it is moved by its offset along its sheet, in no
-/// direction in particular. apart: from the point to the sample; near2: h^2, 6.25 squared spacings
+/// Squared distance of a sample on another sheet after moving it by its offset along the sheet, averaged over
+/// directions. apart: from the point to the sample; near2: h^2, 6.25 squared spacings
 inline float moved_distance2(const Vec3f& apart, const Vec3f& normal, float near2) {
   const float r2 = dot(apart, apart), across = dot(apart, normal),
               along2 = std::max(0.0f, r2 - across * across);
@@ -98,25 +98,25 @@ inline float moved_distance2(const Vec3f& apart, const Vec3f& normal, float near
   return r2 + std::sqrt(2 * along2) * offset + offset * offset;
 }
 
-/// Standard error of channel c, in flux units. near: the part of the kernel that rests on the interpolated
-/// irradiance; variance: of the irradiance around the point.
+/// Standard error of channel c, in flux units. near: part of the kernel using the interpolated irradiance;
+/// variance: of the irradiance around the point.
 template <class F>
 F estimated_error(const PointSums<F>& sums, std::size_t c, F near, F variance, const CloudError& cloud) {
-  // Variation of an irradiance that varies around the point, what its mean misses.
+  // Error of the mean over the deviation of a varying irradiance.
   constexpr float kVariation = 0.2f;
   // Weight of the unpredicted irradiance of a sample for its whole cell.
   constexpr float kRough = 0.8f;
   const F local =
       kOffset * kOffset * larger(F{}, sums.spread[c]) + kVariation * kVariation * near * near * variance;
   const float scale = cloud.scale[c], rough = kRough * cloud.roughness[c], sheets = cloud.other_sheets;
-  // Samples within nodes are not in the sum of squares.
+  // Adds the estimated squares of samples inside nodes.
   const F squares = sums.squares[c] + cloud.far_squares[c] * sums.far[c] * sums.far[c];
   const F shift = kDeviationOfMean * cloud.light_shift[c] * sums.far[c];
   return root(shift * shift + scale * scale * local + rough * rough * squares +
               sheets * sheets * sums.sheets[c] + sums.hierarchy[c] * sums.hierarchy[c]);
 }
 
-/// given: entered irradiance at the query, or null to interpolate every channel.
+/// given: transmitted irradiance at the query, or null to interpolate every channel.
 template <class F>
 PointResult<F> result_from(const PointSums<F>& sums, const EvaluateInput& input,
                            const std::array<F, 3>* given) {
@@ -133,7 +133,7 @@ PointResult<F> result_from(const PointSums<F>& sums, const EvaluateInput& input,
     const F near = input.kernel.near[c] * share[c];
     out.near[c] = near;
     out.exitance[c] = sums.far[c] * unit + near * e;
-    // Where there is less than what is in doubt, all of it is.
+    // Limits the error to the value itself.
     out.error[c] =
         smaller(out.exitance[c], unit * estimated_error<F>(sums, c, near * (1 - own), variance, input.cloud));
   }

@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-constexpr int kBits = 8;  // bits of a coordinate in a key: chunks are coarser
+constexpr int kBits = 8;  // bits of a coordinate in a key: coarser than chunks
 
 struct Box {
   Vec3f low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
@@ -25,8 +25,8 @@ struct Box {
     const Vec3d side = Vec3d(high) - Vec3d(low);
     return dot(side, side);
   }
-  /// That makes integers of less than `end` of halves of offsets from `low`, the same for each axis; 0 where
-  /// all is one point. Halves, for the whole may overflow.
+  /// Scale from halved offsets from `low` to integers below `end`, the same for each axis; 0 for a single
+  /// point. Halved to avoid overflow.
   float scale(float end) const {
     const float half = max_component(high * 0.5f - low * 0.5f);
     return half > 0 ? std::min(end / half, std::numeric_limits<float>::max()) : 0;
@@ -40,7 +40,7 @@ Cell cell_of(const Vec3f& p, const Vec3f& low, float scale) {
   return {std::uint32_t(q.x), std::uint32_t(q.y), std::uint32_t(q.z)};
 }
 
-// Place along Hilbert's curve, which, unlike Morton's, never jumps.
+// Index along Hilbert's curve, continuous unlike Morton's.
 // from  Skilling 2004, Programming the Hilbert curve (from axes to the transpose)
 std::uint64_t hilbert_key(Cell cell) {
   constexpr std::uint32_t kTop = 1u << (kBits - 1);
@@ -59,7 +59,7 @@ std::uint64_t hilbert_key(Cell cell) {
   return morton_key(cell[2] ^ flip, cell[1] ^ flip, cell[0] ^ flip);
 }
 
-// By 3 kBits from `shift`; equal ones keep their order.
+// Stable, by 3 kBits from `shift`.
 void radix_sort(std::vector<std::uint64_t>& items, int shift) {
   constexpr int kDigit = 3 * kBits / 2;
   std::vector<std::uint64_t> other(items.size());
@@ -95,7 +95,7 @@ struct Span {
   }
 };
 
-// Cuts one chunk, whose members stand for its queries.
+// Divides one chunk into packets.
 class ChunkCutter {
  public:
   std::array<Cell, kChunk> cells{};
@@ -110,7 +110,7 @@ class ChunkCutter {
 
  private:
   void sort_key(std::size_t first, std::size_t last, std::size_t axis) {
-    // The coordinate, then the member: no two are equal.
+    // By coordinate, then by member, so no two are equal.
     for (std::size_t i = first; i < last; ++i) keys_[i] = cells[members[i]][axis] << 8 | members[i];
   }
   void take_keys(std::size_t first, std::size_t last) {
@@ -118,7 +118,7 @@ class ChunkCutter {
   }
   std::uint32_t* key(std::size_t i) { return keys_.data() + i; }
 
-  // Cuts members [first, last) in half, and the halves likewise, down to packets.
+  // Halves members [first, last) recursively, down to packets.
   void halve(std::size_t first, std::size_t last) {
     const std::size_t packets = (last - first + kLanes - 1) / kLanes;
     Span box(cells[members[first]]);
@@ -132,7 +132,7 @@ class ChunkCutter {
     halve(middle, last);
   }
 
-  // Cuts a packet where its parts have fewer neighbours than the whole.
+  // Splits a packet if its parts have fewer neighbours than the whole.
   void separate(std::size_t first, std::size_t last, const Span& box) {
     constexpr float kPacket = 2;  // fixed cost of a packet, in neighbourhoods of a point
     const float whole = box.neighbourhood(reach);
@@ -164,7 +164,7 @@ class ChunkCutter {
 
   void finish(std::size_t first, std::size_t last) { cut.counts[cut.packets++] = std::uint8_t(last - first); }
 
-  std::size_t spare_ = 0;  // packets more than there need be
+  std::size_t spare_ = 0;  // packets above the minimum
   std::array<std::uint32_t, kChunk> keys_;
 };
 
@@ -174,7 +174,7 @@ std::vector<std::uint32_t> chunk_order(std::span<const Query> queries) {
   std::vector<std::uint32_t> order;
   order.reserve(queries.size());
   Box box, chunk;
-  double squares = 0;  // squares of the chunks' sides, were they cut from the order given
+  double squares = 0;  // sum of the squared sides of chunks in the given order
   for (std::uint32_t i = 0; i < queries.size(); ++i) {
     if (!is_finite(queries[i].position)) continue;
     order.push_back(i);
@@ -190,9 +190,8 @@ std::vector<std::uint32_t> chunk_order(std::span<const Query> queries) {
     box.add(chunk.low);
     box.add(chunk.high);
   }
-  // Patches of a surface have squares of sides that add up to its area or so (8 times the square of the whole
-  // box's side for the tiles of a picture of the bunny): such an order is kept, for what is near in memory is
-  // near at hand.
+  // Keeps an order whose chunks' squared sides sum to about the area, as for image tiles: it is coherent in
+  // memory.
   const double whole = box.side2(), chunks = double(order.size()) / kChunk;
   const float scale = box.scale(float(1 << kBits) - 0.001f);
   if (scale == 0 || order.size() <= kChunk || squares < whole * std::min(12.0, 0.25 * chunks)) return order;

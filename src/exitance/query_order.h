@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Query points in an order in which neighbours stand together.
+// Order of query points with neighbours together.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,13 @@
 
 namespace opaline {
 
-inline constexpr std::size_t kChunk = 256;  ///< queries that walk the tree together at first
+inline constexpr std::size_t kChunk = 256;  ///< queries beginning the traversal together
 
-/// Queries in chunks of kChunk neighbours; those that are not finite are left out: nothing reaches them.
+/// Order of the queries in chunks of kChunk neighbours; omits non-finite ones, as no light reaches them.
 std::vector<std::uint32_t> chunk_order(std::span<const Query> queries);
 
-/// Sorts a chunk into packets of at most kLanes queries: cut at the middle of the longest side, and again
-/// where parts lie so far from each other that they have fewer neighbours within `reach`, mm, apart than
-/// together.
+/// Sorts a chunk into packets of at most kLanes queries: halves it along the longest side, and again if the
+/// halves separately have fewer neighbours within `reach`, mm, than together.
 PacketCut sort_into_packets(std::span<std::uint32_t> chunk, std::span<const Query> queries, float reach);
 
 }  // namespace opaline

@@ -26,7 +26,7 @@ struct Fields {
   }
 };
 
-// The centroid of all channels and how far off each lies, for four lanes.
+// Centroid of all channels, and largest distance of one from it, for four lanes.
 void set_middle(SourceBlock& block, std::size_t lane) {
   for (std::size_t i = lane; i < lane + 4; ++i) {
     const float flux = block.flux[0][i] + block.flux[1][i] + block.flux[2][i];

@@ -24,7 +24,7 @@ void add_quad(SourceMesh& mesh, const Vec3d& corner, const Vec3d& u, const Vec3d
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-/// Unit vectors of an icosahedron whose triangles are each cut into four, again and again.
+/// Unit vectors of an icosahedron with recursively quartered triangles.
 class Icosphere {
  public:
   explicit Icosphere(int levels) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shapes a scene can name instead of a file, cut into triangles, with their exact normals.
+// Tessellations of the built-in shapes, with exact normals.
 #pragma once
 
 #include <string>
@@ -11,15 +11,16 @@ namespace opaline {
 
 /// Vertices lie on the true surface; the area is within 1e-3 of the true one; all but the quad are closed.
 /// name  of the shape, for messages
-/// error Error{bad_input} for a size that is not finite or not above 0
+/// error Error{bad_input}: a size that is not finite and positive
 SourceMesh tessellate(const SphereShape& sphere, const std::string& name);
 SourceMesh tessellate(const BoxShape& box, const std::string& name);
 SourceMesh tessellate(const QuadShape& quad, const std::string& name);
 SourceMesh tessellate(const SlabShape& slab, const std::string& name);
 SourceMesh tessellate(const TorusShape& torus, const std::string& name);
 
-/// UVs of a shape's triangles. A sphere's: u once around from -z by -x, +z and +x, v from its lower pole to the upper one; each
-/// face of a box once; a torus by the angles around its axis and around the tube.
+/// UVs of a shape's triangles. Sphere: u once around from -z by -x, +z and +x, v from its lower pole to the
+/// upper one. Box: each face once.
+/// Torus: the angles around its axis and around the tube.
 void add_uvs(const SphereShape& sphere, SourceMesh& mesh);
 void add_uvs(const BoxShape& box, SourceMesh& mesh);
 void add_uvs(const SlabShape& slab, SourceMesh& mesh);

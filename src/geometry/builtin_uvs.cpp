@@ -30,7 +30,7 @@ void add_uvs(const SphereShape& sphere, SourceMesh& mesh) {
       v[k] = .5 + std::asin(std::clamp(d.y, -1.0, 1.0)) / std::numbers::pi;
       is_pole[k] = std::hypot(d.x, d.z) < 1e-9;
     }
-    // Beside the seam u goes on beyond 1; at a pole it is that of the middle of the other two.
+    // Beside the seam, u continues beyond 1; at a pole it is the midpoint of the other two corners' u.
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t other = 0; other < 3; ++other)
         if (!is_pole[k] && !is_pole[other] && u[other] - u[k] > .5) u[k] += 1;

@@ -49,11 +49,11 @@ class MeshChecker {
   }
 
  private:
-  /// Without the mesh's name until all of them are known.
+  /// Warnings lack the mesh's name until all are known.
   void warn(std::string text) { report_.warnings.push_back(std::move(text)); }
 
-  /// site_: the first vertex at the same position, which is what neighbourhood goes by. The mesh itself keeps
-  /// vertices apart only where their normals differ.
+  /// Sets site_: the first vertex at the same position, defining neighbourhood. Vertices of the mesh are
+  /// distinct only if their normals differ.
   void find_same_vertices() {
     for (Vec3f& n : source_.normals)
       if (!is_finite(n)) n = {};
@@ -67,7 +67,7 @@ class MeshChecker {
       for (std::uint32_t& v : triangle) v = same_[v];
   }
 
-  /// Takes over what an earlier check found, if it would be found again.
+  /// Reuses the results of an earlier check if they still apply.
   bool recall() {
     if (memory_ == nullptr || !memory_->holds || memory_->fill_holes != settings_.fill_holes ||
         memory_->may_be_open != settings_.may_be_open || memory_->same != same_ || memory_->site != site_ ||
@@ -94,7 +94,7 @@ class MeshChecker {
     memory_->given = source_.triangles;
   }
 
-  /// How a hole is filled, and what was inside out, depends on places: such a mesh is checked anew each time.
+  /// Meshes with filled holes or inward parts are checked again each time, as both depend on positions.
   void finish_memory() {
     if (memory_ == nullptr) return;
     memory_->holds = !places_matter_;
@@ -118,7 +118,7 @@ class MeshChecker {
     return triangles;
   }
 
-  /// Keeps the triangles for which drop(index) is false; returns how many went.
+  /// Removes the triangles with drop(index) true; returns their number.
   template <class Predicate>
   std::size_t drop_triangles(Predicate drop) {
     std::size_t kept = 0;
@@ -219,7 +219,7 @@ class MeshChecker {
            " edges with more than two triangles; inside and outside are ambiguous there");
   }
 
-  /// Last, because a triangle that is only thin still ties its neighbours together.
+  /// Runs last: a degenerate triangle still connects its neighbours.
   void drop_slivers() {
     const std::vector<Vec3d>& p = source_.positions;
     report_.zero_area_dropped += drop_triangles([&](std::size_t t) {
@@ -236,7 +236,8 @@ class MeshChecker {
     warn_of(report_.duplicates_dropped, " duplicate triangles were removed");
   }
 
-  /// Corner data of the remaining triangles; those filling holes have none. given: data of the source, or empty
+  /// Corner data of the remaining triangles; those filling holes have none. given: data of the source, or
+  /// empty
   template <class Corners>
   std::vector<Corners> mended(const std::vector<Corners>& given) const {
     std::vector<Corners> corners;
@@ -306,7 +307,7 @@ class MeshChecker {
   std::vector<std::uint32_t> origins_;  // see CheckMemory; empty: nothing is given by triangle
   CheckMemory* memory_;
   MeshReport report_;
-  std::vector<Vec3f> facet_normals_;  // the file's, where the mesh is not to be smooth
+  std::vector<Vec3f> facet_normals_;  // from the file, unless the mesh is smooth
   std::vector<std::uint32_t> same_, site_;
   bool places_matter_ = false;
 };

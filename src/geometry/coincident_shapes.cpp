@@ -14,7 +14,7 @@ namespace {
 constexpr double kRounding = 1e-6;  // fraction of a shape's diagonal
 constexpr std::size_t kPoints = 16;
 
-/// Bounds in whole steps of the rounding.
+/// Bounds in integer steps of the rounding.
 using BoundsKey = std::array<double, 6>;
 
 BoundsKey key_of(const Bounds& box, double step) {
@@ -48,7 +48,7 @@ bool coincide(const Mesh& a, const Mesh& b, double reach) {
 
 std::vector<std::string> warnings_of_coincident_shapes(const Scene& scene, const World& world) {
   constexpr std::size_t kMostNamed = 3;
-  std::map<BoundsKey, std::vector<std::size_t>> by_bounds;  // the first of shapes that coincide
+  std::map<BoundsKey, std::vector<std::size_t>> by_bounds;  // first of several coincident shapes
   std::vector<std::string> warnings;
   std::size_t more = 0;
   for (std::size_t i = 0; i < world.meshes.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes that a scene has twice in one place.
+// Duplicate shapes at one position.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace opaline {
 
-/// Warnings that name pairs of shapes whose surfaces coincide: equal bounds, and points of one on the other, to 1e-6 of
-/// their size. Nested and touching shapes are none.
+/// Warnings naming pairs of shapes with coincident surfaces: equal bounds, and points of one on the other, to
+/// 1e-6 of their size. Excludes nested and touching shapes.
 std::vector<std::string> warnings_of_coincident_shapes(const Scene& scene, const World& world);
 
 }  // namespace opaline

@@ -9,13 +9,14 @@
 namespace opaline {
 namespace {
 
-// Area of a fan outside of its polygon, over the polygon's: rounding of collinear corners in a file leaves less.
+// Least area of a fan outside its polygon, over the polygon's; rounding of collinear corners in a file causes
+// less.
 constexpr double kLeastOutside = 1e-6;
 
-// Comparisons of corners with ears in all polygons of a file together: seconds. Ears are not compared beyond it.
+// Maximum comparisons of corners with ears in all polygons of a file together, some seconds.
 constexpr std::size_t kMostComparisons = std::size_t(1) << 29;
 
-constexpr double kRounding = 1e-12;  // rounding of a polygon whose corners are at most 1 from its first one
+constexpr double kRounding = 1e-12;  // rounding in a polygon with corners at most 1 from its first one
 
 struct Point {
   double x = 0, y = 0;
@@ -30,7 +31,7 @@ double twice_area(const Point& a, const Point& b, const Point& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// The corners that may lie in ears, by squares of the plane.
+/// Potential corners inside ears, by squares of the plane.
 class CornerGrid {
  public:
   CornerGrid(const std::vector<Point>& points, const std::vector<std::uint32_t>& corners) {
@@ -51,7 +52,7 @@ class CornerGrid {
     for (const std::uint32_t c : corners) corners_[next[cell(points[c])]++] = c;
   }
 
-  /// True if a corner lies in the squares from low to high; counts the corners it looks at.
+  /// True if a corner lies in the squares from low to high; counts the corners tested.
   template <class Predicate>
   bool any(const Point& low, const Point& high, std::size_t& looks, Predicate is_one) const {
     const std::size_t first = cell(low), last = cell(high), across = last % columns_ - first % columns_;
@@ -98,7 +99,7 @@ class EarClipper {
         triangles.push_back({previous_[at], at, next_[at]});
         crosses |= leniency > 1;
         clip(at);
-        at = next_[next_[at]];  // not beside it: a fan of slivers
+        at = next_[next_[at]];  // not adjacent: avoids a fan of slivers
         --left;
         since = 0;
         leniency = 0;
@@ -139,8 +140,8 @@ class EarClipper {
     previous_[next_[i]] = previous_[i];
   }
 
-  /// Where no corner is an ear, first those without area are clipped, then any convex one, then any at all: polygons that
-  /// meet themselves end, too.
+  /// Without a proper ear, clips corners without area, then convex ones, then any, so self-intersecting
+  /// polygons terminate.
   bool is_ear(std::uint32_t i, int leniency) {
     if (leniency > 2 || looks_ > kMostComparisons) return true;
     const Point &a = points_[previous_[i]], &b = points_[i], &c = points_[next_[i]];
@@ -196,11 +197,11 @@ double total_area(const std::vector<Vec3d>& corners, const std::vector<Triangle>
   return twice;
 }
 
-/// The fan of a polygon's first corner, which is zero.
+/// Measures of the fan around a polygon's first corner, at the origin.
 struct FanMeasures {
   Vec3d area_vector;        // twice
   double area = 0;          // twice
-  double area_outside = 0;  // twice, of triangles facing the other way than the whole
+  double area_outside = 0;  // twice, of triangles facing opposite to the whole
 };
 
 FanMeasures measure_fan(const std::vector<Vec3d>& corners) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Polygons of mesh files, cut into triangles.
+// Triangulation of polygons in mesh files.
 #pragma once
 
 #include <array>
@@ -24,18 +24,18 @@ struct Recut {
 
 struct PolygonCuts {
   std::vector<Recut> cuts;
-  std::size_t crossing =
-      0;  ///< polygons that no triangles between their corners cover once, as far as was looked
+  std::size_t crossing = 0;  ///< polygons without a triangulation covering them once, within the search limit
 };
 
-/// Cuts of the polygons whose fans reach beyond them: ears of their projection along the mean normal, so a quad is cut
-/// at its reflex corner. All others keep their fans. Of a polygon crossing itself the cut of the smaller area is taken.
+/// Triangulates polygons not covered by their fans: clips ears of the projection along the mean normal, so a
+/// quad is split at its reflex corner. Other polygons keep their fans. A self-intersecting polygon uses the
+/// triangulation of the smaller area.
 /// in    positions finite; fans of at least two triangles
 /// from  Meisters 1975, Polygons have ears; mean normal after Newell
 PolygonCuts cut_concave_polygons(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
                                  const std::vector<Fan>& fans);
 
-/// Gives what the corners of triangles have, vertices or others, to the corners of the new triangles.
+/// Rearranges per-corner values of triangles, such as vertices, for the new triangles.
 template <class T>
 void recut(const std::vector<Recut>& cuts, std::vector<std::array<T, 3>>& values) {
   std::vector<T> polygon;

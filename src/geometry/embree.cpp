@@ -25,7 +25,7 @@ void copy_to(RTCRay16& packet, std::size_t i, const Ray& ray) {
   packet.mask[i] = ray.mask, packet.id[i] = ray.id, packet.flags[i] = ray.flags;
 }
 
-/// Nothing where the ray has missed.
+/// Empty for a miss.
 void copy_from(const RTCHit16& packet, std::size_t i, Hit& hit) {
   if (packet.geomID[i] == RTC_INVALID_GEOMETRY_ID) return;
   hit.edges_cross = {packet.Ng_x[i], packet.Ng_y[i], packet.Ng_z[i]};

@@ -24,13 +24,13 @@ static_assert(offsetof(Ray, far) == offsetof(RTCRay, tfar) && offsetof(Ray, mask
 void find_hits(RTCScene scene, std::span<TracedRay> rays);
 /// First hit of a single ray.
 void find_hit(RTCScene scene, TracedRay& ray);
-/// Sets far < 0 for each ray that is blocked.
+/// Sets far < 0 for each blocked ray.
 void find_blocked(RTCScene scene, std::span<Ray> rays);
 
 /// Called with each hit along a ray. Set valid to 0 to continue behind it.
 using HitFilter = void (*)(const RTCFilterFunctionNArguments*);
 
-/// Scene flag that allows a filter in find_hits_with.
+/// Scene flag allowing a filter in find_hits_with.
 #if RTC_VERSION_MAJOR >= 4
 using QueryContext = RTCRayQueryContext;
 constexpr RTCSceneFlags kAllowsHitFilter = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
@@ -39,8 +39,8 @@ using QueryContext = RTCIntersectContext;
 constexpr RTCSceneFlags kAllowsHitFilter = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
-/// Traces a ray through all hits that the filter refuses. The filter's arguments point to the context, which
-/// may be the first member of the caller's own record.
+/// Traces a ray through all hits refused by the filter. The filter's arguments point to the context, usable
+/// as the first member of the caller's record.
 void find_hits_with(HitFilter filter, QueryContext& context, RTCScene scene, const Ray& ray);
 
 }  // namespace opaline

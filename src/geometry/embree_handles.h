@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-// Rays of one kind and the time of those batches that were timed.
+// Number of rays of one kind, and time of the timed batches.
 struct RayCounter {
   std::atomic<std::uint64_t> rays{0}, batches{0}, timed_rays{0}, timed_nanoseconds{0};
 
@@ -34,13 +34,13 @@ struct RayScene::Handles {
   }
 };
 
-// One cache line holds two of them: a hit's interpolation reads three.
+// A cache line contains two of them: a hit's interpolation reads three.
 struct alignas(32) RayScene::Vertex {
   Vec3f position, normal;
 };
 
 struct RayScene::MeshView {
-  std::vector<Vertex> vertices;  // shared with Embree, whose own buffers begin at any 16 bytes
+  std::vector<Vertex> vertices;  // shared with Embree; its own buffers are aligned to 16 bytes only
   const std::array<std::uint32_t, 3>* triangles;  // Embree's buffer
   bool faceted;
   float offset;

@@ -22,7 +22,7 @@ struct CollectingContext {
   std::vector<Hit>* crossings;
 };
 
-// Notes the hit and refuses it, so the traversal goes on. Embree may offer a triangle twice.
+// Records the hit and refuses it, so the traversal continues. Embree may report a triangle twice.
 void collect(const RTCFilterFunctionNArguments* arguments) {
   std::vector<Hit>& crossings = *reinterpret_cast<CollectingContext*>(arguments->context)->crossings;
   const RTCHit found = rtcGetHitFromHitN(arguments->hit, arguments->N, 0);

@@ -26,7 +26,7 @@ struct SourceReader {
   }
 };
 
-/// Used bounds of the vertices that triangles use.
+/// Bounds of the vertices used by triangles.
 Bounds used_bounds(const SourceMesh& mesh) {
   Bounds box;
   for (const Triangle& triangle : mesh.triangles) {
@@ -48,7 +48,7 @@ void fit(SourceMesh& mesh, double size, const std::string& name) {
   for (Vec3d& p : mesh.positions) p = (p - origin) * scale;
 }
 
-/// The map of normals: the inverse transpose up to a positive factor, so they stay on their side.
+/// Transform of normals: the inverse transpose up to a positive factor, so they keep their side.
 struct NormalMap {
   Vec3d x, y, z;
   Vec3f operator()(const Vec3f& n) const {
@@ -58,7 +58,7 @@ struct NormalMap {
 
 void place(SourceMesh& mesh, const Transform& to_world, const std::string& name) {
   const Vec3d x = normalized(to_world.x), y = normalized(to_world.y), z = normalized(to_world.z);
-  const double determinant = dot(x, cross(y, z));  // determinant of the directions alone: no matter of scale
+  const double determinant = dot(x, cross(y, z));  // determinant of unit directions, independent of scale
   if (!(std::abs(determinant) > 1e-12) || !is_finite(to_world.translation))
     throw bad_file(name, "the transform is singular or not finite", "three independent axes",
                    "relative determinant " + std::to_string(determinant));

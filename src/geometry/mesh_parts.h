@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connected parts of a mesh, and the measures by which inside and outside are told apart.
+// Connected parts of a mesh, and measures distinguishing inside and outside.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace opaline {
 
-/// Triangles as they are wound, with their file's normals.
+/// Triangles with their current winding and the file's normals.
 struct WoundMesh {
   const std::vector<Vec3d>& positions;
   const std::vector<Triangle>& triangles;
   const std::vector<Vec3f>& normals;  ///< as SourceMesh::normals
 };
 
-/// Connected parts, each wound alike throughout.
+/// Connected parts, each with consistent winding.
 struct MeshParts {
   enum class Kind : unsigned char {
     closed,  ///< an even number of its triangles meets in each of its edges
@@ -27,16 +27,16 @@ struct MeshParts {
   struct RimEdge {
     std::uint32_t part, from, to;  ///< as its triangle has it
   };
-  std::vector<std::uint32_t> of;  ///< one a triangle: its part
-  std::vector<Kind> kinds;        ///< one a part
+  std::vector<std::uint32_t> of;  ///< one per triangle: its part
+  std::vector<Kind> kinds;        ///< one per part
   std::vector<RimEdge> rims;      ///< edges of the open parts' holes
 };
 
-/// Areas are twice, volumes six times what they are called.
+/// Sums; areas are doubled, volumes sextupled.
 struct PartMeasures {
   Bounds box;
   double volume = 0;      ///< signed; holes closed by triangles to the middles of their rims
-  double magnitudes = 0;  ///< sum of the absolute values that add up to the volume
+  double magnitudes = 0;  ///< sum of the absolute terms of the volume
   // Open parts only:
   double area = 0, hole_area = 0;
   Vec3d area_vector;  ///< sum of the triangles' normals times their areas
@@ -75,7 +75,7 @@ class MeasuredParts {
   std::vector<PartMeasures> measures_;
   std::vector<std::uint32_t> first_, order_;  // triangles by part
   std::vector<std::uint32_t> first_closing_;  // by part
-  std::vector<Corners> closing_;              // triangles that close holes, wound as the part
+  std::vector<Corners> closing_;              // triangles closing holes, with the part's winding
 };
 
 }  // namespace opaline

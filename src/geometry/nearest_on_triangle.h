@@ -13,7 +13,8 @@ struct OnTriangle {
   double u, v, square;
 };
 
-/// Nearest point to a position: the foot of the perpendicular where it lies in the triangle, else one of the three sides.
+/// Nearest point to a position: the foot of the perpendicular where it lies in the triangle, else one of the
+/// three sides.
 inline OnTriangle nearest_on(const std::array<Vec3d, 3>& corners, const Vec3d& position) {
   const Vec3d p = position - corners[0], ab = corners[1] - corners[0], ac = corners[2] - corners[0],
               bc = ac - ab;

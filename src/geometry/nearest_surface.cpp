@@ -26,7 +26,7 @@ NearestSurface::Place NearestSurface::at(const Vec3d& position) const {
     Place found{RTC_INVALID_GEOMETRY_ID, RTC_INVALID_GEOMETRY_ID, 0, 0, 0};
   } search{rays_.meshes_, is_body_, position, kAnywhere};
   const auto visit = [](RTCPointQueryFunctionArguments* candidate) {
-    constexpr double kWider = 1 + 1e-5;  // margin that keeps all equally near triangles
+    constexpr double kWider = 1 + 1e-5;  // margin keeping all equally near triangles
     Search& to = *static_cast<Search*>(candidate->userPtr);
     const std::uint32_t mesh = candidate->geomID, triangle = candidate->primID;
     if (!to.is_body[mesh]) return false;

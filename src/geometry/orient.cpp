@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-/// Union-find over triangles that also knows whether two joined triangles must be wound alike.
+/// Union-find over triangles with the relative winding of two joined triangles.
 class WindingSets {
  public:
   explicit WindingSets(std::size_t count) : parent_(count), opposite_(count, 0) {
@@ -34,7 +34,7 @@ class WindingSets {
     return {root, opposite};
   }
 
-  /// False if a and b are joined already the other way.
+  /// False if a and b are already joined with the other relative winding.
   bool join(std::uint32_t a, std::uint32_t b, bool opposite) {
     const auto [root_a, from_a] = find(a);
     const auto [root_b, from_b] = find(b);
@@ -114,7 +114,7 @@ class Orienter {
     return std::span(order_).subspan(component.first, component.count);
   }
 
-  /// Where neighbours disagree, the smaller part gives way.
+  /// Where neighbours disagree, the smaller part is flipped.
   void agree(const Component& component) {
     if (component.opposite > component.count - component.opposite) flip_all(component);
     result_.inconsistent += std::min(component.opposite, component.count - component.opposite);
@@ -124,14 +124,14 @@ class Orienter {
     for (const std::uint32_t t : members(component)) result_.flip[t] = !result_.flip[t];
   }
 
-  /// A component is closed if an even number of its triangles meets in each of its edges. The rims of the others are where
-  /// more of its triangles go one way than the other.
+  /// A component is closed if an even number of its triangles meets at each of its edges. The other
+  /// components have rims, at edges with more of their triangles in one direction than in the other.
   void find_rims() {
     edges_.for_each([&](std::uint32_t low, std::uint32_t high, std::span<const std::uint32_t> corners) {
       for (std::size_t i = 0; i < corners.size(); ++i) {
         const std::uint32_t own = component_of_[corners[i] / 3];
         std::uint32_t meets = 0, before = 0;
-        int upward = 0;  // triangles that go from low to high, less those that go back
+        int upward = 0;  // triangles from low to high minus those from high to low
         for (std::size_t j = 0; j < corners.size(); ++j) {
           if (component_of_[corners[j] / 3] != own) continue;
           ++meets;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Winding: neighbours alike, parts outward.
+// Winding: consistent between neighbours, outward for parts.
 #pragma once
 
 #include <array>
@@ -16,17 +16,17 @@ struct TurnedParts {
 };
 
 struct Winding {
-  std::vector<bool> flip;              ///< one a triangle: swap two corners to mend it
-  std::size_t inconsistent = 0;        ///< triangles of `flip` that were wound against their neighbours
+  std::vector<bool> flip;              ///< one per triangle: swap two corners to correct it
+  std::size_t inconsistent = 0;        ///< triangles of `flip` inconsistent with their neighbours
   std::array<TurnedParts, 4> turned;   ///< parts wound inward, by Inward
-  std::size_t unorientable_edges = 0;  ///< edges that no winding satisfies (Moebius strips)
-  MeshParts parts;                     ///< parts of the mesh as mended
+  std::size_t unorientable_edges = 0;  ///< edges without a consistent winding (Moebius strips)
+  MeshParts parts;                     ///< parts of the corrected mesh
 };
 
-/// Which triangles to flip so that triangles sharing an edge of exactly two agree, and parts face outward. Where
-/// neighbours disagree the larger half of the part wins. See inward_parts.
-/// in    mesh: as read; sites: its triangles, of vertices shared by neighbours (welded), no triangle with a vertex
-///       twice; edges: of these; decide_open: open parts, too, else they keep their winding
+/// Flips for a consistent winding of triangles sharing an edge of exactly two, with parts facing outward.
+/// Where neighbours disagree, the larger half of the part wins. See inward_parts.
+/// in    mesh: as read; sites: its triangles with shared (welded) vertices, no triangle with a vertex twice;
+///       edges: of these; decide_open: also decides open parts, otherwise they keep their winding
 Winding find_winding(const WoundMesh& mesh, const std::vector<Triangle>& sites, const EdgeTable& edges,
                      bool decide_open);
 

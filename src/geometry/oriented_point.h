@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Position and normals at a place of a triangle.
+// Position and normals at a point of a triangle.
 #pragma once
 
 #include <cmath>
@@ -8,17 +8,17 @@
 
 namespace opaline {
 
-// v along its own direction with length 1, or the substitute where it has none.
+// Unit vector along v, or the substitute if v is zero.
 inline Vec3f unit_or(const Vec3f& v, const Vec3f& substitute) {
   const float length2 = dot(v, v);
   return length2 > 0 ? v * (1 / std::sqrt(length2)) : substitute;
 }
 
-/// Cosine between a triangle's normal and the surface's below which the triangle is reversed.
+/// Largest cosine between the normals of a reversed triangle and of the surface.
 constexpr float kReversed = -0.5f;
 
-/// A point of the triangle with edges ab and ac. blended: the interpolated normals of its corners, null for a
-/// facet. The vertices' normals tell the outer side: a triangle that a fold has reversed faces against them.
+/// A point of the triangle with edges ab and ac. blended: interpolated vertex normals, null for a facet. The
+/// vertex normals define the outside: a triangle reversed by a fold faces against them.
 template <class T>
 SurfacePoint oriented_point(const Vec3<T>& position, const Vec3<T>& ab, const Vec3<T>& ac,
                             const Vec3f* blended) {

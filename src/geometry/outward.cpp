@@ -11,11 +11,11 @@ namespace {
 
 using Kind = MeshParts::Kind;
 
-constexpr double kMostHoles = 0.25;    // area of the holes of a part that counts as closed, over its own area
-constexpr double kSheet = 0.75;        // length of a sheet's area vector over its area
-constexpr double kLeastVolume = 1e-6;  // over area times diagonal: below, an open part is flat
-constexpr double kLeastOneSided = 0.1;   // volume over magnitudes of a wide open part that has an inside
-constexpr double kLeastAgreement = 0.9;  // area whose normals agree, over that with usable normals
+constexpr double kMostHoles = 0.25;      // largest area of holes over a part's area for it to count as closed
+constexpr double kSheet = 0.75;          // length of a sheet's area vector over its area
+constexpr double kLeastVolume = 1e-6;    // over area times diagonal: below, an open part is flat
+constexpr double kLeastOneSided = 0.1;   // least volume over magnitudes of a wide open part with an inside
+constexpr double kLeastAgreement = 0.9;  // least area with agreeing normals, over that with usable normals
 constexpr double kLeastNormals = 0.1;    // area with usable normals, over the whole
 
 enum class Shape : unsigned char { none, sheet, wide, solid };  // none: not tested
@@ -63,7 +63,7 @@ class Chooser {
     return is_sheet ? Shape::sheet : Shape::wide;
   }
 
-  /// True if a part agrees with its normals, 1, or is wound against them, -1; 0 without such.
+  /// Agreement of a part with its normals: 1, or -1 if opposite; 0 without normals.
   int agreement(std::uint32_t i) const {
     const PartMeasures& m = measured_[i];
     const double sum = m.area_for_normals + m.area_against_normals;
@@ -72,7 +72,7 @@ class Chooser {
     return m.area_against_normals >= kLeastAgreement * sum ? -1 : 0;
   }
 
-  /// True if normals are undecided: it may be a piece of a surface.
+  /// True if normals are inconclusive: the part may be a piece of a surface.
   bool is_piece(std::uint32_t i) const {
     return (shapes_[i] == Shape::sheet || shapes_[i] == Shape::wide) && agreement(i) == 0;
   }
@@ -86,7 +86,7 @@ class Chooser {
     return pieces > 1;
   }
 
-  /// Along the axis on which the mesh is longest.
+  /// Sorts along the longest axis of the mesh.
   void order_by_box() {
     Bounds all;
     for (std::uint32_t i = 0; i < result_.size(); ++i) {
@@ -102,7 +102,7 @@ class Chooser {
     });
   }
 
-  /// visit(part, parts before it whose boxes it may meet), in the order of their lower ends
+  /// visit(part, earlier parts with possibly intersecting boxes), in the order of their lower ends
   template <class Visitor>
   void sweep(Visitor visit) {
     std::vector<std::uint32_t> before;
@@ -131,7 +131,8 @@ class Chooser {
     });
   }
 
-  /// Wide open parts and sheets that no normals decide may be pieces of one surface where their boxes meet.
+  /// Wide open parts and sheets without conclusive normals may be pieces of one surface, if their boxes
+  /// intersect.
   void find_crowded() {
     crowded_.resize(result_.size());
     sweep([&](std::uint32_t i, const std::vector<std::uint32_t>& before) {

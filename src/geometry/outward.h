@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which parts of a mesh are wound inward.
+// Detection of inward-wound parts of a mesh.
 #pragma once
 
 #include <vector>
@@ -11,16 +11,16 @@ namespace opaline {
 enum class Inward : unsigned char {
   no,
   by_volume,           ///< a closed part
-  by_normals,          ///< an open part, wound against its normals
-  by_volume_if_closed  ///< an open part whose volume is negative once its holes are closed
+  by_normals,          ///< an open part opposite to its normals
+  by_volume_if_closed  ///< an open part of negative volume after closing its holes
 };
 
-/// For each part whether its winding has to be turned, and why.
-/// A closed part is wound outward if its volume is positive. One wound inward inside another part is a cavity and
-/// stays, unless the outermost part around it is turned: then it is turned with it. An open part whose holes have less
-/// than a quarter of its area counts as closed. A part that is wider open goes by its normals where they agree, else by
-/// its volume, unless it is a sheet, which has no inside, or meets other such parts. All parts that are left go by their
-/// common volume if together they nearly close. A part that nothing decides stays.
+/// Classifies parts with inward winding by the reason. A closed part faces outward if its volume is positive.
+/// An inward part inside another part is a cavity and keeps its winding, unless the outermost part around it
+/// is flipped: both are then. An open part with holes below a quarter of its area counts as closed. A wider
+/// open part follows its normals if they agree, otherwise its volume, except for sheets, which have no
+/// inside, and parts intersecting other such parts. The remaining parts follow their common volume if they
+/// nearly close together. Undecided parts keep their winding.
 std::vector<Inward> inward_parts(const WoundMesh& mesh, const MeshParts& parts);
 
 }  // namespace opaline

@@ -47,8 +47,8 @@ RTCBuildQuality quality_of(RayBuild build) {
 
 }  // namespace
 
-// Where memory or threads run out, Embree reports some failures as unknown ones: its allocators and the
-// system's calls differ in what they throw.
+// Embree reports some failures of memory or threads as unknown, because its allocators and system calls throw
+// different exceptions.
 void check_device(RTCDevice device) {
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN)
@@ -69,8 +69,7 @@ RayScene::RayScene(const World& world, RayBuild build) : handles_(std::make_uniq
   handles_->check();
 }
 
-// Embree ends the process when it releases a device whose threads could not all be started: such a one is
-// left.
+// Leaks a device that failed to start all threads: Embree ends the process on releasing it.
 void RayScene::Handles::check() {
   try {
     check_device(device);
@@ -110,7 +109,7 @@ RayScene::Statistics RayScene::statistics() const {
           handles_->intersected.seconds() + handles_->occluded.seconds()};
 }
 
-// In batches of rays: the clock is read for every eighth.
+// Counted by batches; reads the clock for every eighth.
 void RayScene::intersect(std::span<TracedRay> rays) const {
   const FlushDenormals mode;
   for (std::size_t begin = 0; begin < rays.size(); begin += kBatch) {

@@ -27,7 +27,7 @@ std::string known_extensions() {
   return list;
 }
 
-/// Refuses a file that is far longer than its mesh, or than memory, before it is read.
+/// Rejects a file far longer than its mesh, or than memory, before reading it.
 void check_size(const std::string& path, const InputFile& file) {
   constexpr std::uintmax_t spare = 1 << 20;  // programs append notes of their own
   constexpr std::uintmax_t header = 1 << 12;

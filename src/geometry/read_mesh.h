@@ -9,14 +9,14 @@
 
 namespace opaline {
 
-/// The triangles of a mesh file, polygons cut into triangles, and seams that rounding opens closed.
+/// Reads a mesh file: triangulates polygons, and closes seams opened by rounding.
 /// in    part: see MeshFile::part
-/// out   at least one triangle unless all were collapsed; every index in range, every position finite and
-///       below 1e18; positions as exact as the file has them (STL: float); the file's normals, not
-///       normalised, with a vertex doubled where OBJ gives it several; UVs, if asked for and there
-/// error Error{bad_input} naming the file, and the line where known: missing, not a file, empty, unknown
-///       extension, no such part, truncated, not of its format, bad coordinates or indices, no faces. Memory stays within a
-///       small multiple of the file's length
+/// out   at least one triangle unless all were degenerate; every index in range, every position finite and
+///       below 1e18, with the file's precision (STL: float); the file's normals, not normalised, with a
+///       vertex doubled for several OBJ normals; UVs, if requested and present
+/// error Error{bad_input} naming the file, and the line if known: missing, not a file, empty, unknown
+///       extension, unknown part, truncated, wrong format, bad coordinates or indices, no faces. Memory stays
+///       within a small multiple of the file's length
 SourceMesh read_mesh(const std::string& path, const std::string& part = {}, MeshUvs uvs = MeshUvs::unread);
 
 }  // namespace opaline

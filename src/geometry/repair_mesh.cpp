@@ -21,8 +21,8 @@ using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 using HalfedgeMesh = OpenMesh::TriMesh;  // coordinates in double
 using Halfedge = OpenMesh::HalfedgeHandle;
 
-// Up to this many edges of a hole, all triangulations are compared, in time cubic in their number. Among those within a
-// Delaunay tetrahedrization, which take less, the one that is found hangs on addresses where some are as good.
+// Number of a hole's edges up to which all triangulations are compared, in cubic time. The faster search
+// within a Delaunay tetrahedralization breaks ties by addresses, so its result is not reproducible.
 constexpr std::size_t largest_cubic_hole = 500;
 
 class HoleFiller {
@@ -41,8 +41,7 @@ class HoleFiller {
   }
 
  private:
-  /// Half-edges allow no edge of three triangles and no two fans at one vertex: orient_polygon_soup doubles
-  /// vertices there; original_ leads back.
+  /// Half-edges require manifold edges and vertices: orient_polygon_soup doubles others; original_ maps back.
   void build(const std::vector<Triangle>& triangles) {
     std::vector<std::uint32_t> compact(positions_.size(), 0xffffffff);
     std::vector<Point> points;
@@ -65,7 +64,7 @@ class HoleFiller {
       pmp::orient_polygon_soup(points, polygons);
       trace_back(points, before);
     }
-    // CGAL's own way from a soup to OpenMesh would round the points to float
+    // CGAL's conversion of a soup to OpenMesh rounds points to float
     for (const Point& p : points) mesh_.add_vertex({p.x(), p.y(), p.z()});
     for (const auto& [a, b, c] : polygons)
       mesh_.add_face(mesh_.vertex_handle(unsigned(a)), mesh_.vertex_handle(unsigned(b)),
@@ -109,7 +108,7 @@ class HoleFiller {
       pmp::triangulate_hole(mesh_, border, std::back_inserter(patch), options);
 #endif
     } catch (const std::exception&) {
-      patch.clear();  // CGAL's answer to degenerate holes: an assertion
+      patch.clear();  // CGAL's assertion on degenerate holes
     }
     if (patch.empty()) {
       result_.unfilled.push_back(edges);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How messages call a shape.
+// Name of a shape in messages.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace opaline {
 
-/// Its file, with the part of it that is meant, or "shape 'name'".
+/// Its file, with the part, or "shape 'name'".
 inline std::string shape_label(const Shape& shape) {
   if (const auto* file = std::get_if<MeshFile>(&shape.source))
     return file->path + (file->part.empty() ? "" : " part '" + file->part + "'");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles as they come from a file or a built-in shape, before they are placed, checked and mended.
+// Triangles from a file or a built-in shape, before placement and checks.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ namespace opaline {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Where a mesh without normals is shaded round: across edges between triangles of one smoothing group that bend by
-/// no more than the crease angle.
+/// Smooth shading of a mesh without normals: across edges between triangles of one smoothing group bent by no
+/// more than the crease angle.
 struct Smoothing {
-  std::vector<std::uint32_t> groups;  ///< one a triangle, 0 is none; empty: all triangles are one group
+  std::vector<std::uint32_t> groups;  ///< one per triangle, 0 is none; empty: all triangles are one group
   double crease_angle = 180;          ///< degrees
 
   bool is_everywhere() const { return groups.empty() && crease_angle >= 180; }
@@ -27,13 +27,13 @@ struct Smoothing {
 
 struct SourceMesh {
   std::vector<Vec3d> positions;
-  std::vector<Vec3f> normals;  ///< empty, or one a vertex, of any length; zero where there is none
+  std::vector<Vec3f> normals;  ///< empty, or one per vertex, of any length; zero where there is none
   std::vector<Triangle> triangles;
-  std::vector<CornerUvs> uvs;            ///< one a triangle, if asked for and there; else empty
+  std::vector<CornerUvs> uvs;            ///< one per triangle, if requested and present; otherwise empty
   std::vector<CornerTangents> tangents;  ///< the same
-  std::vector<CornerColors> colors;      ///< one a triangle, or empty
+  std::vector<CornerColors> colors;      ///< one per triangle, or empty
   Smoothing smoothing;
-  std::size_t collapsed = 0;  ///< triangles left out already for want of three different corners
+  std::size_t collapsed = 0;  ///< triangles dropped for having fewer than three different corners
   std::vector<std::string> warnings;
 };
 

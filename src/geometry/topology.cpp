@@ -13,7 +13,7 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {
   return hash ^ (hash >> 32);
 }
 
-/// A hash set of indices, compared by what they stand for; answers with the first equal one.
+/// A hash set of indices, compared by their values; returns the first equal one.
 class FirstEqual {
  public:
   explicit FirstEqual(std::size_t count)
@@ -65,13 +65,13 @@ std::vector<std::uint32_t> weld_all(const std::vector<Position>& positions,
   return same;
 }
 
-/// Finds vertices that differ by rounding, by the cells of a grid four times as wide.
+/// Finds vertices differing by rounding, by cells of four times its width.
 class SeamFinder {
  public:
   SeamFinder(const std::vector<Vec3d>& positions, double reach)
       : positions_(positions), reach_(reach), first_(positions.size()) {}
 
-  /// For each vertex the first one within reach of it that has none itself.
+  /// For each vertex, the first earlier one within reach that is not joined itself.
   std::vector<std::uint32_t> run() {
     std::vector<std::uint32_t> same(positions_.size());
     for (std::uint32_t v = 0; v < same.size(); ++v) same[v] = find(v);
@@ -95,8 +95,7 @@ class SeamFinder {
       return max_component(component_max(apart, -apart)) <= reach_;
     };
     std::uint32_t found = FirstEqual::none;
-    for (unsigned corner = 1; corner < 8;
-         ++corner) {  // the cells on the other side of near faces, edges and corners
+    for (unsigned corner = 1; corner < 8; ++corner) {  // cells across nearby faces, edges and corners
       Vec3d other = cell;
       bool is_other = true;
       for (std::size_t axis = 0; axis < 3; ++axis) {

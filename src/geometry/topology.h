@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which vertices, edges and triangles of a soup are the same.
+// Equal vertices, edges and triangles of a soup.
 #pragma once
 
 #include <algorithm>
@@ -12,24 +12,23 @@
 
 namespace opaline {
 
-/// For each vertex the first one at exactly the same position (0 and -0 are the same); with normals given, of
-/// exactly the same normal as well.
+/// For each vertex, the first one at exactly the same position (0 and -0 are equal), and with exactly the
+/// same normal if given.
 std::vector<std::uint32_t> weld(const std::vector<Vec3d>& positions, const std::vector<Vec3f>& normals = {});
 std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions);
 
-/// Moves vertices onto the first one that differs from them by rounding alone: by 2^-44 of the largest coordinate along each
-/// axis. Nothing moves where a triangle with an area would lose it.
+/// Moves vertices to the first one differing by rounding alone: by 2^-44 of the largest coordinate along each
+/// axis. Moves none if a triangle would lose its area.
 void join_seams(SourceMesh& mesh);
 
-/// True if a triangle counts as having no area: twice it is at most 1e-12 of the square of its longest side.
+/// True for a triangle without area: twice it is at most 1e-12 of the square of its longest side.
 bool is_sliver(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
-/// For each triangle whether an earlier one has the same three vertices, in whatever order.
+/// For each triangle, true if an earlier one has the same three vertices in any order.
 std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles);
 
-/// The edges of a soup of triangles: each with the corners it starts from. Corner 3 t + k is the edge of
-/// triangle t from its vertex k to the next. Edges are in the order of (lower vertex, higher vertex), corners
-/// ascend.
+/// Edges of a triangle soup, each with its starting corners. Corner 3 t + k is the edge of triangle t from
+/// its vertex k to the next. Edges are in the order of (lower vertex, higher vertex), corners ascend.
 class EdgeTable {
  public:
   EdgeTable(const std::vector<Triangle>& triangles, std::size_t vertices);

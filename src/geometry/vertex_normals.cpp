@@ -112,7 +112,7 @@ Vec3d area_vector(const Mesh& mesh, const Triangle& t) {
   return cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
 }
 
-/// out   triangles facing against around(v), of any length, at each of their vertices v
+/// out   triangles facing opposite to around(v), of any length, at each of their vertices v
 template <class Around>
 std::vector<std::uint32_t> triangles_against(const Mesh& mesh, const Around& around) {
   std::vector<std::uint32_t> found;
@@ -127,8 +127,8 @@ std::vector<std::uint32_t> triangles_against(const Mesh& mesh, const Around& aro
   return found;
 }
 
-/// Those that a fold has reversed. The sum of the area vectors around a vertex depends on the ring around it alone,
-/// however far the vertex was dragged.
+/// Triangles reversed by a fold. The sum of the area vectors around a vertex depends only on its one-ring, so
+/// it is independent of the vertex's own displacement.
 template <class SiteOf>
 std::vector<std::uint32_t> reversed_by_areas(const Mesh& mesh, const SiteOf& site_of) {
   std::vector<Vec3d> sums(mesh.positions.size());
@@ -139,7 +139,7 @@ std::vector<std::uint32_t> reversed_by_areas(const Mesh& mesh, const SiteOf& sit
   return triangles_against(mesh, [&](std::uint32_t v) { return sums[site_of(v)]; });
 }
 
-/// One average for all vertices at the same position, over triangles that no fold has reversed.
+/// One average for all vertices at the same position, without triangles reversed by a fold.
 std::vector<Vec3d> averages(const Mesh& mesh, const std::vector<std::uint32_t>& site) {
   std::vector<Vec3d> sum(mesh.positions.size());
   const auto add = [&](const Triangle& t, double sign) {
@@ -152,7 +152,7 @@ std::vector<Vec3d> averages(const Mesh& mesh, const std::vector<std::uint32_t>& 
   return sum;
 }
 
-/// Vertices whose triangles cancel out get the normal of one of them.
+/// Vertices with a zero sum of normals get the normal of one triangle.
 void average_missing(Mesh& mesh, const std::vector<bool>& missing, bool all_apart) {
   std::vector<std::uint32_t> site(all_apart ? mesh.positions.size() : 0);
   std::iota(site.begin(), site.end(), 0u);
@@ -167,7 +167,7 @@ void average_missing(Mesh& mesh, const std::vector<bool>& missing, bool all_apar
   }
 }
 
-/// Normals are often left behind when a mesh is turned inside out.
+/// Flips normals left unchanged when a mesh was turned inside out.
 std::size_t turn_outward(Mesh& mesh) {
   std::vector<double> agreement(mesh.positions.size());
   for (const Triangle& t : mesh.triangles) {

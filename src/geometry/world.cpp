@@ -88,8 +88,8 @@ double power_of_1024(double length) {
   return length > 0 ? std::exp2(10 * std::floor(std::ilogb(length) / 10.0)) : 1;
 }
 
-/// Between the least and the largest translucent body: derivatives of their profiles have up to the eighth
-/// power of a length in them. Of the scene where nothing is translucent.
+/// Unit between the smallest and the largest translucent body, because derivatives of their profiles contain
+/// up to the eighth power of a length. The scene's size if no shape is translucent.
 double unit_of(const Scene& scene, std::span<const Bounds> boxes, double diagonal) {
   double least = INFINITY, largest = 0;
   for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -11,16 +11,16 @@
 
 namespace opaline {
 
-/// One picture in the texture cache.
+/// One image in the texture cache.
 class CachedPicture {
  public:
   virtual ~CachedPicture() = default;
   virtual std::array<float, 4> at(const TexturePlace& place) const = 0;
   virtual std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const = 0;
-  /// The first texel, if all others are like it.
+  /// Constant texel, if all are equal.
   virtual std::optional<Texel> constant() const = 0;
   virtual Texel mean() const = 0;
-  /// Which of red, green, blue and alpha the picture has.
+  /// Presence of red, green, blue and alpha in the image.
   virtual std::array<bool, 4> channels() const = 0;
   virtual TextureMemory memory() const = 0;
   /// Ignored parts of the file; empty: none.
@@ -29,7 +29,7 @@ class CachedPicture {
 
 struct TextureReader {
   std::unique_ptr<CachedPicture> (*open)(PictureSource source, TextureEncoding encoding);
-  /// True if it holds floats.
+  /// True for floats.
   bool (*is_float)(const PictureSource& source);
   /// Size limit of the cache, bytes.
   std::size_t (*cache_limit)();

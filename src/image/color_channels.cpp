@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kColorWords{"red", "green", "blue", "alpha"};
 
-/// The part of a channel's name behind its layer, in lower case.
+/// Part of a channel's name after its layer, in lower case.
 std::string component_of(std::string_view channel) {
   return in_lower_case(channel.substr(channel.rfind('.') + 1));
 }
 
-/// With its point; empty: none.
+/// Includes the dot; empty: none.
 std::string_view layer_of(std::string_view channel) {
   return channel.substr(0, channel.rfind('.') + 1);
 }
@@ -31,7 +31,7 @@ bool has_color(const ChannelPlaces& places) {
   return std::max({places[0], places[1], places[2]}) >= 0;
 }
 
-/// Places of one layer.
+/// Channel indices of one layer.
 ChannelPlaces places_in(std::string_view layer, const std::vector<std::string>& channels) {
   ChannelPlaces places{-1, -1, -1, -1};
   int grey = -1;

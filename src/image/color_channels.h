@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which channels of a picture are colours, and in which space. Of the picture module, too (picture_reader.h).
+// Colour channels of an image and their colour space. Also part of the reader module (picture_reader.h).
 #pragma once
 
 #include <array>
@@ -12,32 +12,32 @@
 
 namespace opaline {
 
-/// Red, green and blue of a layer, by their places among the channels.
+/// Indices of red, green and blue of a layer among the channels.
 struct ColorChannels {
   std::array<std::size_t, 3> places;
-  bool is_variance = false;  ///< whose roots are converted
+  bool is_variance = false;  ///< the roots of its values are converted
 };
 
-/// R, G, B and the same of every layer that has them. N, P and Cryptomatte's are none.
+/// R, G, B of the image and of every layer having them; excludes N, P and Cryptomatte.
 std::vector<ColorChannels> color_channels(const std::vector<std::string>& channels);
 
-/// Indices of red, green, blue and alpha among an image's channels, -1 where it has none. The first three of a grey image
-/// are alike.
+/// Indices of red, green, blue and alpha among an image's channels, -1 if missing. The first three are equal
+/// for a grey image.
 using ChannelPlaces = std::array<int, 4>;
 
-/// The channels that textures and environments take: R, G, B or Y, and A, in upper or lower case or in full ("red"),
-/// plain or of the only layer that has them ("diffuse.R"); a single channel is grey whatever its name.
+/// Channels for textures and environments: R, G, B or Y, and A, in upper or lower case or in full ("red"),
+/// plain or of the only layer having them ("diffuse.R"); a single channel is grey for any name.
 /// in    path: for messages
 /// error Error{bad_input} naming the file: no such channels, several layers, luminance and chroma (RY, BY)
 ChannelPlaces channel_places(const std::vector<std::string>& channels, const std::string& path);
 
 /// True for channels of Cryptomatte: names and coverages, not colours.
 bool is_matte_channel(std::string_view channel);
-/// True if a layer is what one light adds: "diffuse_NAME", "specular_NAME", "emission_NAME".
+/// True for a layer of one light's contribution: "diffuse_NAME", "specular_NAME", "emission_NAME".
 bool is_light_group(std::string_view layer);
 
-/// Converts pixels of `step` values each. Standard errors and variances become bounds, which hold however the channels'
-/// errors go together.
+/// Converts pixels of `step` values each. Standard errors and variances become upper bounds, for any
+/// correlation of the channels.
 void convert_colors(std::span<float> pixels, std::size_t step, std::span<const ColorChannels> colors,
                     const ColorMatrix& matrix);
 

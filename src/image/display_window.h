@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much of a picture may be empty: pixels that a file's header alone asks for.
+// Limit for empty pixels requested by a file's header alone.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace opaline {
 
-/// Checks that filling a display window with empty pixels takes memory in proportion to the data window.
+/// Checks that the memory of a display window is in proportion to the data window.
 /// in    data, display: pixels
 /// error Error{bad_input} naming the file: more than 64 times as many pixels, and more than 4096 x 4096
 inline void check_display_window(const std::string& path, double data, double display) {

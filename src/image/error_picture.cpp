@@ -20,7 +20,7 @@ Image make_image(const Layer& layer, const std::vector<std::string>& channels) {
   return image;
 }
 
-/// Colour on the screen of a pixel where something is compared in every channel.
+/// Displayed colour of a pixel compared in every channel.
 RgbF colour_of(double error) {
   const double decades = std::log10(brightest_error / darkest_error);
   return brightness_ordered_colour(error > 0 ? std::log10(error / darkest_error) / decades : 0.0);

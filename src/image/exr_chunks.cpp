@@ -21,7 +21,8 @@ namespace {
 
 namespace imf = OPENEXR_IMF_NAMESPACE;
 
-/// Decoded size of run-length encoded bytes: n >= 0 repeats the next byte n + 1 times, -n precedes n literal bytes.
+/// Decoded size of run-length encoded bytes: n >= 0 repeats the next byte n + 1 times, -n precedes n literal
+/// bytes.
 std::size_t bytes_of_runs(const char* runs, std::size_t size) {
   std::size_t bytes = 0;
   for (std::size_t at = 0; at < size;) {
@@ -32,7 +33,7 @@ std::size_t bytes_of_runs(const char* runs, std::size_t size) {
   return bytes;
 }
 
-/// Returns whether a zlib stream decodes to as many bytes.
+/// True if a zlib stream decodes to this number of bytes.
 bool inflates_to(std::size_t bytes, const char* data, std::size_t size) {
   std::vector<Bytef> decoded(bytes);
   uLongf length = bytes;
@@ -40,7 +41,7 @@ bool inflates_to(std::size_t bytes, const char* data, std::size_t size) {
          length == bytes;
 }
 
-/// Bytes of a pixel; 0: some channels have fewer pixels, which OpenImageIO refuses.
+/// Bytes of a pixel; 0: subsampled channels, unsupported by OpenImageIO.
 std::size_t pixel_bytes(const imf::ChannelList& channels) {
   std::size_t bytes = 0;
   for (auto at = channels.begin(); at != channels.end(); ++at) {
@@ -118,7 +119,7 @@ class ChunkCheck {
       }
   }
 
-  /// A chunk that compression would not make smaller is stored as it is.
+  /// Incompressible chunks are stored uncompressed.
   void check_chunk(long long width, long long height, const char* data, int stored, bool is_at_end) {
     const std::size_t bytes = std::size_t(width) * std::size_t(height) * pixel_, size = std::size_t(stored);
     bool is_whole = size > 0;
@@ -140,7 +141,7 @@ class ChunkCheck {
 void check_exr_chunks(const std::string& path) try {
   imf::MultiPartInputFile file(path.c_str(), 0, false);
   const imf::Header& header = file.header(0);
-  if (header.hasType() && imf::isDeepData(header.type())) return;  // refused where it is opened
+  if (header.hasType() && imf::isDeepData(header.type())) return;  // refused on opening
   ChunkCheck(file, path).check();
 } catch (const Error&) {
   throw;

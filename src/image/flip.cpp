@@ -17,7 +17,7 @@ namespace {
 using Plane = std::vector<float>;
 using Taps = std::vector<float>;  // 2 radius + 1
 
-/// A picture in an opponent colour space, or what filters made of one plane.
+/// An image in an opponent colour space, or filter responses of one plane.
 struct Planes {
   int width = 0, height = 0;
   std::array<Plane, 3> channels;
@@ -81,7 +81,7 @@ Taps normalized_taps(int radius, const Weight& weight) {
   return taps;
 }
 
-// Colours. XYZ is relative to white (Rec.709 primaries, D65 at x = .3127, y = .3290), so rows sum to 1.
+// Colours. XYZ is relative to white (Rec.709 primaries, D65 at x = 0.3127, y = 0.3290), so rows sum to 1.
 
 constexpr float to_xyz[3][3] = {{.43388735f, .37622401f, .18988865f},
                                 {.21263901f, .71516868f, .07219232f},
@@ -105,7 +105,7 @@ Vec3f xyz_of_opponent(const Vec3f& opponent) {
   return {y + opponent.y / 500, y, y - opponent.z / 200};
 }
 
-/// CIELAB with a and b times .01 L: the Hunt effect, colours fade in the dark.
+/// CIELAB with a and b scaled by 0.01 L, for the Hunt effect: colours fade in the dark.
 Vec3f hunt_lab_of(const Vec3f& xyz) {
   constexpr float delta = 6.0f / 29.0f;
   const auto f = [](float t) {
@@ -139,7 +139,7 @@ Planes opponent_planes(const Layer& layer, double exposure) {
   return planes;
 }
 
-// The colour pipeline, section 4.1: what the eye's contrast sensitivity leaves, in CIELAB.
+// The colour pipeline, section 4.1: contrast-sensitivity filtering, in CIELAB.
 
 /// a sqrt(pi / b) exp(-pi^2 x^2 / b) at x degrees, the transform of a term of a sensitivity function (table
 /// 1).
@@ -149,7 +149,7 @@ struct Sensitivity {
 constexpr Sensitivity achromatic{1, .0047}, red_green{1, .0053};
 constexpr std::array<Sensitivity, 2> blue_yellow{{{34.1, .04}, {13.5, .025}}};
 
-/// One term as a filter; `weight` is its integral before it was brought to 1.
+/// One term as a filter; `weight` is its integral before normalization.
 struct SensitivityFilter {
   Taps taps;
   double weight = 0;
@@ -201,7 +201,8 @@ Planes seen_colours(const Planes& opponent, double pixels_per_degree) {
   return seen;
 }
 
-/// Squeezes large differences: up to .4 of the largest takes [0, .95], the rest the rest (section 4.1.4).
+/// Compresses large differences: up to 0.4 of the largest maps to [0, 0.95], the rest to the rest (section
+/// 4.1.4).
 float colour_difference(const Vec3f& a, const Vec3f& b) {
   constexpr float power = .7f, knee = .4f, height = .95f;
   static const float largest = std::pow(
@@ -225,7 +226,7 @@ Plane lengths(const Plane& x, const Plane& y) {
 }
 
 Features features_of(const Planes& opponent, double pixels_per_degree) {
-  const double deviation = .5 * .082 * pixels_per_degree;  // an edge is .082 degrees wide
+  const double deviation = .5 * .082 * pixels_per_degree;  // an edge is 0.082 degrees wide
   const int radius = static_cast<int>(std::ceil(3 * deviation));
   const auto gaussian = [&](double i) { return std::exp(-i * i / (2 * deviation * deviation)); };
   const Taps smooth = normalized_taps(radius, gaussian);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture as the texture cache is to see it: from a file or from memory, its texels linear colours. Of the module
-// (picture_reader.h).
+// Source of the texture cache: an image from a file or from memory, with linear texels. Part of the reader
+// module (picture_reader.h).
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -22,11 +22,11 @@ namespace opaline {
 /// The formats of textures.
 inline constexpr std::string_view kTextureFormats[] = {"exr", "hdr", "png", "jpeg", "tiff"};
 
-/// Decodes another input, its first part alone. Texels become linear colours, see TexelColors; of sRGB they are halves,
-/// whose rounding is below that of 8 bits. Formats that are read from their beginning alone are decoded at once and held until each row was asked
-/// for: the cache asks for rows in any order, and OpenImageIO 2.4 goes back by opening the file anew, which a picture in
-/// memory does not survive. So are pictures whose data window is not their display window: OpenImageIO 2.4 puts the
-/// texture's tiles in the wrong places if it lies within.
+/// Decodes the first part of another input. Texels become linear colours, see TexelColors; those of sRGB are
+/// halves, with rounding below that of 8 bits. Formats without random access are decoded as a whole and
+/// cached until each row was read: the cache reads rows in any order, and OpenImageIO 2.4 rewinds by
+/// reopening the file, impossible for an image in memory. The same applies to images with a data window
+/// inside the display window, as OpenImageIO 2.4 misplaces their tiles.
 class LinearInput : public OIIO::ImageInput {
  public:
   /// Registers the source of inputs with this name.
@@ -35,7 +35,7 @@ class LinearInput : public OIIO::ImageInput {
   static void forget_source(const std::string& name);
   static OIIO::ImageInput* create() { return new LinearInput; }
 
-  /// True if an opened picture is held.
+  /// True if an opened image is cached.
   static bool is_held(const OpenPicture& picture, const TexelLayout& layout);
 
   const char* format_name() const override { return "opaline linear"; }
@@ -55,15 +55,15 @@ class LinearInput : public OIIO::ImageInput {
   void take_spec();
   bool reopen();
   bool decode();
-  /// From the file's values to texels, in the display window.
+  /// Converts the file's values to texels, in the display window.
   void place(const std::vector<unsigned char>& values);
-  /// Where to read into what shall become texels at `texels`, and make them of it.
+  /// Buffer for reading values to be converted into `texels`, and the conversion.
   void* buffer_for(void* texels, std::size_t pixels, OIIO::TypeDesc type);
   void finish(void* texels, std::size_t pixels, OIIO::TypeDesc type);
   bool complain();
-  /// Returns whether the values of texels are finite and at most kLargestTexel; else sets the error.
+  /// True if all texels are finite and at most kLargestTexel; otherwise sets the error.
   bool check_range(const void* values, std::size_t count, OIIO::TypeDesc type);
-  /// Changes the colours of values_ and gives them to the cache.
+  /// Converts the colours of values_ and passes them to the cache.
   bool change_colors(std::size_t pixels, void* data);
   void change_each(std::size_t pixels);
 
@@ -75,7 +75,7 @@ class LinearInput : public OIIO::ImageInput {
   OIIO::TypeDesc native_;  // type of the values in the file
   std::mutex mutex_;       // guards all members below
   std::vector<unsigned char> whole_, read_;
-  std::vector<bool> is_given_;  // each row of it
+  std::vector<bool> is_given_;  // per row
   std::vector<float> values_;
 };
 

@@ -26,7 +26,7 @@ std::vector<std::string> channels_of(const Image& image, const std::string& laye
       names.push_back(layer.empty() ? component : layer + "." + component);
     if (std::ranges::all_of(names, [&](const std::string& name) { return has_channel(image, name); }))
       return names;
-    if (layer.empty()) break;  // X, Y, Z alone are no colours
+    if (layer.empty()) break;  // X, Y, Z alone are not colours
   }
   if (!layer.empty() && has_channel(image, layer)) return {layer};
   return {};
@@ -52,7 +52,7 @@ double largest_of(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::ranges::max_element(values);
 }
 
-/// |a| and |b| of the pixels that can be compared.
+/// |a| and |b| of the compared pixels.
 struct Magnitudes {
   std::vector<double> a, b;
 };
@@ -61,10 +61,10 @@ double floor_of(const Magnitudes& compared) {
   constexpr double share = 1e-3;
   for (const double scale : {percentile(compared.b, .99), largest_of(compared.b), largest_of(compared.a)})
     if (scale > 0) return share * scale;
-  return 1;  // both pictures are black: every error is 0
+  return 1;  // both images are black: every error is 0
 }
 
-/// Mean and spread of values given one by one.
+/// Running mean and variance.
 class Moments {
  public:
   void add(double value) {
@@ -110,7 +110,7 @@ struct HalvesSums {
   }
 };
 
-/// The values of one channel in the three pictures, pixel by pixel.
+/// Values of one channel in the three images, pixel by pixel.
 struct HalvesChannel {
   const std::vector<float>&h, &d1, &d2;
   double largest = 0, mean = 0;  ///< largest and mean of d over the compared pixels, > 0
@@ -180,8 +180,8 @@ class NoisyChannel {
     return object_[i] != 0 && std::isfinite(h_[i]) && std::isfinite(d_[i]) && std::isfinite(variance_[i]);
   }
 
-  /// The pixel's own where its noise is small. Else its neighbours', whose noise is independent of the difference that is
-  /// divided.
+  /// The pixel's own value if its noise is small; otherwise the neighbours', with noise independent of the
+  /// numerator.
   double squared_reference(std::size_t i) const {
     constexpr double kSmallNoise = 0.05;
     const double own = double(d_[i]) * double(d_[i]), noise = double(variance_[i]);
@@ -191,7 +191,8 @@ class NoisyChannel {
     return own + (around - own) * share;
   }
 
-  /// The mean of d^2 - v over the neighbours, or of the pixel where there are none; at least a tenth of the pixel's variance.
+  /// Mean of d^2 - v over the neighbours, or of the pixel without neighbours; at least a tenth of the pixel's
+  /// variance.
   double mean_square_around(std::size_t i) const {
     constexpr int kReach = 2;
     const int x = int(i) % width_, y = int(i) / width_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bytes of a picture that is to be decoded. Of the picture module, too (picture_reader.h).
+// Bytes of an image before decoding. Also part of the reader module (picture_reader.h).
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace opaline {
 
-/// A picture's bytes: a file, or in memory.
+/// An encoded image: a file, or bytes in memory.
 struct PictureSource {
-  std::string path;   ///< for messages, and to read unless there are bytes
+  std::string path;   ///< for messages, and for reading without bytes
   std::string bytes;  ///< bytes of the file
   bool repeats = true;
 };
 
-/// Reads a source, which outlives it.
+/// Reads a source; must not outlive it.
 class PictureBytes {
  public:
   /// error as InputFile

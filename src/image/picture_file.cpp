@@ -9,9 +9,8 @@
 namespace opaline {
 namespace {
 
-/// Floats in memory over bytes in the file, at most: a constant picture of 8192 x 8192 halves packs 29330 : 1
-/// as DWA, 1945 : 1 as ZIP, less as others (measured); a PNG of one-bit palette entries 99072 : 1 (deflate's
-/// 1032); a JPEG or TIFF 10240 : 1 at most (progressive JPEG of empty blocks).
+/// Largest ratio of floats in memory to bytes in the file: bounds the most compressible images of each format
+/// (constant DWA and ZIP EXRs, one-bit palette PNGs, progressive JPEGs of empty blocks) with a margin.
 double densest(const OIIO::ImageSpec& spec, std::string_view format) {
   if (format == "png") return 131072;
   if (format == "jpeg" || format == "tiff") return 16384;
@@ -24,7 +23,8 @@ std::string one_line(std::string message) {
   return message;
 }
 
-/// By the first bytes, empty: none of them. OpenImageIO would try every format it knows, and finds a Targa in noise.
+/// Format by the first bytes; empty: unknown. OpenImageIO would try every known format, and detects a Targa
+/// in noise.
 std::string_view format_of(const PictureBytes& bytes) {
   const std::string begin = bytes.read(0, 8);
   const std::string_view start = begin;
@@ -37,8 +37,8 @@ std::string_view format_of(const PictureBytes& bytes) {
                                                                                                     : "";
 }
 
-// Beside the picture the libraries hold rows: OpenImageIO 256, however few there are, OpenEXR 32 a thread (traced on a
-// picture of 55555 x 2: 850 MB for 2.6).
+// Memory of the libraries besides the image: rows of OpenImageIO (256, even for fewer) and of OpenEXR (32 per
+// thread).
 void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::string_view format,
                 std::uintmax_t file_size) {
   if (spec.width < 1 || spec.height < 1)  // Radiance files may have any sign
@@ -50,7 +50,8 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::strin
   if (claimed > densest(spec, format) * static_cast<double>(file_size) + always_allowed)
     throw bad_file(path, "the file is too short for the size it claims", {},
                    std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
-  // A small file may claim any size honestly: equal pixels take almost no bytes, and decoding them takes time and memory.
+  // Small files may have any size: constant images are highly compressible, but decoding takes time and
+  // memory.
   constexpr double most_pixels = 1 << 29;
   const int width = std::max(spec.width, spec.full_width), height = std::max(spec.height, spec.full_height);
   if (double(width) * height > most_pixels)
@@ -59,7 +60,7 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::strin
                        std::to_string(std::int64_t(1e-6 * width * height)) + " million; make it smaller");
 }
 
-// libjpeg takes a missing end for an end, and greys what is not there.
+// libjpeg accepts a missing end, and fills missing pixels with grey.
 void check_jpeg_end(const PictureBytes& bytes, const std::string& path) {
   constexpr std::uintmax_t kTail = 1 << 16;  // programs append notes of their own
   const std::string tail = bytes.read(bytes.size() - std::min(kTail, bytes.size()), kTail);

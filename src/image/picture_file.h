@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Picture files as OpenImageIO opens them, after what can be checked before they are decoded. Of the module
+// Image files opened by OpenImageIO, after checks before decoding. Part of the reader module
 // (picture_reader.h).
 #pragma once
 
@@ -15,19 +15,19 @@
 
 namespace opaline {
 
-/// A picture that OpenImageIO has opened, to be read with alpha not multiplied in.
+/// An image opened by OpenImageIO, for reading without premultiplied alpha.
 struct OpenPicture {
   std::string_view format;  ///< "exr", "hdr", "png", "jpeg" or "tiff"
   std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
   OIIO::ImageInput::unique_ptr input;  ///< destroyed first
 };
 
-/// Opens a source, which outlives it, if it is of one of the formats. Memory stays bounded by the file's own length: a
-/// damaged header can claim any size.
-/// error Error{bad_input} naming the file: missing, no regular file, not of the formats, deep, too large
+/// Opens a source in one of the formats; must not outlive it. Memory is bounded by the file's length, as a
+/// damaged header may have any size.
+/// error Error{bad_input} naming the file: missing, not a regular file, another format, deep, too large
 OpenPicture open_picture(const PictureSource& source, std::span<const std::string_view> formats);
 
-/// Checks a PNG's chunks and a JPEG's end, which their decoders do not.
+/// Checks a PNG's chunks and a JPEG's end, ignored by their decoders.
 /// error Error{bad_input} naming the file: truncated, damaged
 void check_is_whole(const PictureSource& source);
 

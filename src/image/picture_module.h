@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The module that has OpenImageIO (picture_reader.h), loaded where it is first asked for.
+// The reader module with OpenImageIO (picture_reader.h), loaded on first use.
 #pragma once
 
 namespace opaline {
 
 /// A function of the module.
-/// error Error{run_failed}: the module is not there
+/// error Error{run_failed}: the module is missing
 void* picture_module_function(const char* name);
 
 /// True if it was loaded.

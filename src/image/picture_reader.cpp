@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A module of its own (picture_reader.h): all that stands on OpenImageIO.
+// Separate module with all code using OpenImageIO (picture_reader.h).
 #include "image/picture_reader.h"
 
 #include <OpenImageIO/color.h>
@@ -18,7 +18,7 @@
 namespace opaline {
 namespace {
 
-/// Text that describes the picture, without what describes the file.
+/// Copies metadata of the image, without those of the file.
 void copy_metadata(const OIIO::ImageSpec& spec, Image& image) {
   for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
     const std::string_view name(attribute.name().data(), attribute.name().size());
@@ -61,7 +61,7 @@ Image read_picture(const std::string& path) {
   Image image = describe(spec);
   image.pixels.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
                       image.channels.size());
-  // A truncated EXR opens, and is found out here.
+  // Detects a truncated EXR, accepted on opening.
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
     throw bad_file(path, "the image is damaged: " + complaint_of(&input));
   if (picture.format == "png") linearize(image, spec.alpha_channel);

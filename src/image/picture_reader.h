@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures are read by OpenImageIO, which brings some 250 libraries along: loading them costs .2 s of CPU, as
-// much as a preview's samples, light and shading together. So the reader is a module, loaded when the first
-// picture is read.
+// Image reading with OpenImageIO. The reader is a module loaded on the first use, as OpenImageIO depends on
+// some 250 libraries and loading them costs as much CPU as a whole preview.
 #pragma once
 
 #include <string>

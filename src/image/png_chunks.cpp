@@ -32,7 +32,7 @@ std::string with_png_texts(const std::string& bytes,
   constexpr std::size_t header_end = 8 + 12 + 13;  // the signature, and IHDR with its 13 bytes of data
   std::string result = bytes.substr(0, header_end);
   for (const auto& [keyword, text] : texts) {
-    // After the keyword: not compressed, by method 0, of no language, without a translation of the keyword.
+    // After the keyword: uncompressed, method 0, no language, no translated keyword.
     std::string chunk = "iTXt" + keyword;
     chunk.append(5, '\0');
     chunk += text;

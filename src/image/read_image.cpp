@@ -13,7 +13,7 @@ constexpr const char* kModule = "opaline_picture_reader.so";
 
 }  // namespace
 
-// Looked for along the run path of the program.
+// Found through the run path of the program.
 void* picture_module_function(const char* name) {
   void* const module = ::dlopen(kModule, RTLD_NOW | RTLD_LOCAL);
   void* const function = module != nullptr ? ::dlsym(module, name) : nullptr;

@@ -13,7 +13,7 @@ namespace opaline {
 namespace {
 
 bool are_same(const RgbPrimaries& a, const RgbPrimaries& b) {
-  constexpr double kRounding = 1e-4;  // rounding of files that state four digits
+  constexpr double kRounding = 1e-4;  // rounding of primaries given with four digits
   for (const auto& [x, y] : {std::pair(a.red, b.red), std::pair(a.green, b.green), std::pair(a.blue, b.blue),
                              std::pair(a.white, b.white)})
     if (!(std::abs(x[0] - y[0]) < kRounding && std::abs(x[1] - y[1]) < kRounding)) return false;
@@ -32,7 +32,7 @@ std::string text_of(const RgbPrimaries& p) {
 }
 
 bool is_finite_matrix(const ColorMatrix& matrix) {
-  constexpr double kMost = 1e3;  // weights of a space whose primaries lie nearly on a line
+  constexpr double kMost = 1e3;  // maximum weights, exceeded by nearly collinear primaries
   return std::ranges::all_of(
       matrix, [](const Vec3d& row) { return max_component(component_max(row, -row)) < kMost; });
 }

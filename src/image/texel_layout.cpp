@@ -21,7 +21,7 @@ bool is_grey_tiff(const OIIO::ImageSpec& file) {
   return photometric == kWhiteIsZero || photometric == kBlackIsZero;
 }
 
-/// Names of the channels. OpenImageIO calls two or three channels of a grey TIFF file R, G and B.
+/// Names of the channels. OpenImageIO names two or three channels of a grey TIFF file R, G and B.
 std::vector<std::string> names_of(const OIIO::ImageSpec& file) {
   std::vector<std::string> names = file.channelnames;
   if (!is_grey_tiff(file) || names.size() < 2) return names;

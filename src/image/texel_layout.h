@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the texels of a texture lie among the values of a file. Of the module (picture_reader.h).
+// Mapping of a file's values to texels. Part of the reader module (picture_reader.h).
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -10,24 +10,24 @@
 
 namespace opaline {
 
-/// Largest absolute value of a texel: slopes between larger ones would not be finite.
+/// Largest absolute value of a texel: differences of larger ones could overflow.
 inline constexpr double kLargestTexel = 1e30;
 inline constexpr const char* kTexelOutOfRange = "has a texel that is not finite or above 1e30";
 
-/// Texels fill the file's display window; outside of its data window they are 0. They have the channels Y, Y A, R G B or
-/// R G B A; one of R, G and B that the file lacks is 0.
+/// Texels fill the file's display window, with 0 outside its data window. They have the channels Y, Y A, R G
+/// B or R G B A; a missing one of R, G and B is 0.
 struct TexelLayout {
   ChannelPlaces places{};    ///< places of red, green, blue and alpha in the file
   int channels = 0;          ///< channels of a texel
   ChannelPlaces sources{};   ///< sources of a texel's channels in the file
-  int begin = 0, end = 0;    ///< the channels of the file that hold them all
+  int begin = 0, end = 0;    ///< range of the file's channels containing them all
   bool is_windowed = false;  ///< the two windows differ
-  int ignored = 0;           ///< channels beside grey whose meaning a TIFF file does not state
+  int ignored = 0;           ///< TIFF channels beside grey without a declared meaning
 
-  /// error Error{bad_input} naming the file: as channel_places; the windows have no pixel in common
+  /// error Error{bad_input} naming the file: as channel_places; or disjoint windows
   TexelLayout(const OIIO::ImageSpec& file, const std::string& path);
 
-  /// True if the channels from begin to end are a texel's as they stand.
+  /// True if the channels from begin to end equal a texel's.
   bool is_plain() const;
   /// Specification of texels. file: at any size
   OIIO::ImageSpec spec(const OIIO::ImageSpec& file) const;

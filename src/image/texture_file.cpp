@@ -38,7 +38,7 @@ PictureSource source_of(const std::string& path, bool repeats) {
   return {image.path.empty() ? path : image.path, std::move(image.bytes), repeats};
 }
 
-/// The files of a set by the numbers of their tiles.
+/// Files of a set by tile number.
 std::map<int, std::string> tile_files(const std::string& path) {
   const fs::path pattern(path);
   const std::string name = pattern.filename().string();
@@ -83,7 +83,7 @@ struct Stamp {
 Stamp stamp_of(const std::string& path) {
   Stamp stamp;
   const auto add = [&](const std::string& file) {
-    std::error_code missing;  // opening it says so
+    std::error_code missing;  // reported on opening
     stamp.files.emplace_back(fs::last_write_time(file, missing), fs::file_size(file, missing));
   };
   if (is_gltf_image(path))
@@ -115,7 +115,7 @@ void TextureFile::add_picture(int tile, const std::string& path, TextureEncoding
                                            content_hash(source)};
   hash_ = XXH3_64bits(parts.data(), sizeof parts);
   std::unique_ptr<const CachedPicture> picture = reader().open(std::move(source), encoding);
-  if (tile == 0) constant_ = picture->constant();  // a set of tiles is not the same where it has no tile
+  if (tile == 0) constant_ = picture->constant();  // a set of tiles is not constant where a tile is missing
   if (warning_.empty()) warning_ = picture->warning();
   for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = has_channel_[c] && picture->channels()[c];
   pictures_[tile] = std::move(picture);

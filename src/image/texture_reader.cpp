@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Textures on OpenImageIO's texture cache, which makes the smaller sizes of a picture where they are asked for. Of the
+// Textures with OpenImageIO's texture cache, which computes smaller sizes on demand. Part of the reader
 // module (picture_reader.h).
 #include <OpenImageIO/imagecache.h>
 #include <OpenImageIO/texture.h>
@@ -21,7 +21,7 @@
 namespace opaline {
 namespace {
 
-constexpr int kRows = 64;  // rows of a picture, read at once
+constexpr int kRows = 64;  // rows of an image, read at once
 
 /// A quarter of the machine, but at least 256 MB and at most 4 GB.
 std::size_t cache_limit() {
@@ -30,7 +30,7 @@ std::size_t cache_limit() {
   return limit;
 }
 
-/// For all textures of the process. Never destroyed: threads may still look up.
+/// Shared by all textures. Never destroyed: threads may still use it.
 OIIO::TextureSystem& texture_system() {
   static OIIO::TextureSystem* const system = [] {
     OIIO::TextureSystem* made = OIIO::TextureSystem::create(false);
@@ -42,7 +42,7 @@ OIIO::TextureSystem& texture_system() {
   return *system;
 }
 
-/// Rows of the data window; where a file has tiles, rows of whole tiles.
+/// Rows of the data window; for tiled files, rows of whole tiles.
 void read_rows(OIIO::ImageInput& input, const TexelLayout& layout, int begin, int end, OIIO::TypeDesc type,
                void* values, const std::string& path) {
   const OIIO::ImageSpec& spec = input.spec();
@@ -78,7 +78,7 @@ bool is_even(const PictureSource& source) {
   return true;
 }
 
-/// Calls visit(texel, how many there are) for all texels, with their colours changed, while it returns true.
+/// Calls visit(texel, count) for all texels, with converted colours, while it returns true.
 template <class Visit>
 void for_each_texel(const PictureSource& source, const TexelColors& colors, const Visit& visit) {
   const OpenPicture opened = open_picture(source, kTextureFormats);
@@ -92,7 +92,7 @@ void for_each_texel(const PictureSource& source, const TexelColors& colors, cons
   const auto value = [&](std::size_t i, std::size_t c, double otherwise) {
     if (layout.places[c] < 0) return otherwise;
     double v = double(values[i * channels + std::size_t(layout.places[c] - layout.begin)]);
-    return is_bytes ? std::round(v * 255) / 255 : v;  // exactly what colours of a scene file are
+    return is_bytes ? std::round(v * 255) / 255 : v;  // exactly equal to colours in a scene file
   };
   const int x_begin = std::max(spec.x, spec.full_x),
             x_end = std::min(spec.x + spec.width, spec.full_x + spec.full_width);
@@ -157,7 +157,7 @@ class OiioPicture : public CachedPicture {
     return {texel[0], texel[1], texel[2], channels_ == 4 ? texel[3] : 1};
   }
 
-  // Cubic splines between the texels of every size, for slopes without steps.
+  // Cubic splines between the texels of every size, for continuous slopes.
   std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const override {
     OIIO::TextureOpt options = options_;
     options.interpmode = OIIO::TextureOpt::InterpBicubic;
@@ -171,7 +171,7 @@ class OiioPicture : public CachedPicture {
   }
 
   std::optional<Texel> constant() const override {
-    // Bytes are compared far faster than texels, but not in windows.
+    // Comparing bytes is far faster than comparing texels, but does not support windows.
     if (!is_windowed_ && !is_even(*source_)) return {};
     std::optional<Texel> first;
     bool is_constant = true;

@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-/// Bends what is brighter than `start` towards 1, and takes colour from what was far above it.
+/// Compresses values above `start` towards 1, and desaturates those far above.
 Vec3d with_soft_highlights(const Vec3d& color, double start) {
   constexpr double kDesaturation = .15;
   const double peak = max_component(color), room = 1 - start;
@@ -48,7 +48,7 @@ Vec3d agx(const Vec3d& color) {
     const double stops = std::clamp(std::log2(std::max(logarithmic[c], 1e-10)), kDarkest, kBrightest);
     logarithmic[c] = agx_contrast((stops - kDarkest) / (kBrightest - kDarkest));
   }
-  Vec3d shown = kOutset * logarithmic;  // encoded for a screen of gamma 2.2
+  Vec3d shown = kOutset * logarithmic;  // encoded for a display of gamma 2.2
   for (std::size_t c = 0; c < 3; ++c) shown[c] = std::pow(std::max(shown[c], 0.0), 2.2);
   return shown;
 }

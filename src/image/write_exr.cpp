@@ -30,12 +30,12 @@ namespace {
 
 constexpr float half_max = 65504.0f;
 
-/// ZIP compresses 16 rows together. A strip has many of them, for all threads, as far as memory is not felt.
+/// ZIP compresses 16 rows together. A strip has several blocks, for all threads, within a small memory limit.
 constexpr int block_rows = 16, most_blocks = 32;
 constexpr std::size_t strip_bytes = std::size_t(8) << 20;
 
-/// The file under OpenEXR's writer. It remembers the first failure, since the writer's destructor, which
-/// writes last, does not tell.
+/// Output stream for OpenEXR's writer. Records the first failure, because the writer's destructor, with the
+/// final write, does not report it.
 class CheckedFile final : public Imf::OStream {
  public:
   explicit CheckedFile(const std::string& path)
@@ -61,7 +61,7 @@ class CheckedFile final : public Imf::OStream {
     if (file_ == nullptr || ::fseeko(file_, static_cast<::off_t>(place), SEEK_SET) != 0) fail();
   }
 
-  /// Closes; 0, or the errno of the first thing that failed since the start.
+  /// Closes the file; returns 0, or the errno of the first failure.
   int finish() {
     if (file_ != nullptr && std::fclose(std::exchange(file_, nullptr)) != 0) remember();
     return failure_;
@@ -80,7 +80,7 @@ class CheckedFile final : public Imf::OStream {
   int failure_ = 0;
 };
 
-/// Positions, depths, irradiance and variances need more than a half's 11 bits or its range; Cryptomatte's names are
+/// Positions, depths, irradiance and variances exceed a half's 11 bits or its range; Cryptomatte's names are
 /// bits of a float.
 bool always_float(const std::string& channel) {
   return channel == "Z" || channel.starts_with("P.") || channel.starts_with("irradiance.") ||
@@ -92,9 +92,9 @@ Imath::Box2i data_window(const Image& image) {
   return {corner, corner + Imath::V2i(image.width - 1, image.height - 1)};
 }
 
-/// A channel of the picture as the file has it.
+/// Channel of an image in the file.
 struct FileChannel {
-  std::size_t place = 0;  // among the picture's channels
+  std::size_t place = 0;  // index among the image's channels
   bool half = false;
   std::size_t bytes() const { return half ? sizeof(::half) : sizeof(float); }
   Imf::PixelType type() const { return half ? Imf::HALF : Imf::FLOAT; }
@@ -111,7 +111,7 @@ Imf::Header make_header(const Image& image, const std::vector<FileChannel>& chan
             height = image.full_height > 0 ? image.full_height : image.height;
   Imf::Header header({{0, 0}, {width - 1, height - 1}}, data_window(image));
   header.compression() = Imf::ZIP_COMPRESSION;
-  header.zipCompressionLevel() = 1;  // 5 % larger than at the usual level 4, in two thirds of its time
+  header.zipCompressionLevel() = 1;  // slightly larger files than at the default level 4, but faster
   for (const FileChannel& channel : channels)
     header.channels().insert(image.channels[channel.place], Imf::Channel(channel.type()));
   header.insert("Software", Imf::StringAttribute("opaline"));
@@ -135,7 +135,7 @@ float storable(float value, bool half, WriteReport& report) {
   return value;
 }
 
-/// One channel of a row in the file's type.
+/// One channel of a row, in the file's type.
 template <class Stored>
 void store_row(const float* value, std::size_t step, std::size_t count, char* to, WriteReport& report) {
   constexpr bool half = sizeof(Stored) < sizeof(float);
@@ -145,7 +145,7 @@ void store_row(const float* value, std::size_t step, std::size_t count, char* to
   }
 }
 
-/// Rows of a picture in the file's own types, channel by channel.
+/// Rows of an image in the file's types, channel by channel.
 class Strip {
  public:
   Strip(const Image& image, const std::vector<FileChannel>& channels, FilmColorSpace space)

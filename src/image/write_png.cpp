@@ -35,8 +35,8 @@ float exposed(float value, double gain) {
   return static_cast<float>(std::min(value * gain, kMost));
 }
 
-/// OpenImageIO's scalar formula is the exact one; its ColorConfig would give the same, unless $OCIO named another
-/// configuration.
+/// OpenImageIO's scalar formula is exact; its ColorConfig gives the same, except with another configuration
+/// in $OCIO.
 std::uint8_t quantize(float shown) {
   return static_cast<std::uint8_t>(std::lround(255.0f * std::min(OIIO::linear_to_sRGB(shown), 1.0f)));
 }

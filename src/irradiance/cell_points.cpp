@@ -11,7 +11,7 @@
 namespace opaline {
 namespace {
 
-// A sample's triangle, and places on it from places in its plane.
+// A sample's triangle, and the map from its plane to barycentrics.
 class OwnTriangle {
  public:
   OwnTriangle(const RayScene& rays, const SurfaceSample& s) : hit_{} {
@@ -27,7 +27,7 @@ class OwnTriangle {
     hit_.v = s.v;
   }
 
-  /// The place at d from the sample as a hit, of Hit::kMiss where it is outside.
+  /// Point at d from the sample as a hit, Hit::kMiss outside the triangle.
   Hit at(const Vec3f& d) const {
     Hit hit = hit_;
     hit.u += dot(d, along_u_);
@@ -57,7 +57,7 @@ CellPoints::CellPoints(const RayScene& rays, std::span<const SurfaceSample> samp
     : rays_(rays), samples_(samples), surface_(surface), radius_(0.85f * spacing) {}
 
 std::uint32_t CellPoints::add(std::uint32_t index, std::span<const std::uint32_t> neighbours) {
-  // About one candidate in three lies in the cell; a sliver's cell makes do with fewer lines.
+  // About one candidate in three is in the cell; cells of slivers have fewer lines.
   constexpr std::uint64_t kCandidates = 8 * kMost;
   const SurfaceSample& s = samples_[index];
   const Vec3f normal = rays_.surface_point(s.mesh, s.triangle, s.u, s.v).geometric;
@@ -81,7 +81,7 @@ std::uint32_t CellPoints::add(std::uint32_t index, std::span<const std::uint32_t
     if (!(height2 > 0) || !is_within(cells_.back(), d)) continue;
     const float height = std::sqrt(height2);
     lines_.push_back({number, count++, Ray(s.position + d + normal * height, -normal, 2 * height)});
-    // No ray finds the sample's triangle as surely: something standing on it lies in the same plane.
+    // Tests the sample's own triangle directly: rays could hit a coplanar shape instead.
     const Hit hit = own.at(d);
     if (hit.mesh != Hit::kMiss)
       add_crossing(lines_.back(), rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v));
@@ -96,7 +96,7 @@ bool CellPoints::is_within(const Cell& cell, const Vec3f& from_sample) const {
 }
 
 void CellPoints::project() {
-  constexpr int kSheets = 16;  // that one line is followed through
+  constexpr int kSheets = 16;  // maximum sheets along a line
   std::vector<TracedRay> traced;
   for (const Line& line : lines_) traced.push_back({line.ray, {}});
   std::vector<std::uint32_t> open(lines_.size());
@@ -128,7 +128,7 @@ void CellPoints::add_crossing(const Line& line, const SurfacePoint& point) {
   const Cell& cell = cells_[line.cell];
   const float cosine = dot(point.geometric, cell.normal);
   if (!(cosine > 0) || !is_within(cell, point.position - cell.sample)) return;
-  // The steeper the surface stands to the lines, the fewer of them meet its area.
+  // Steep surfaces are crossed by fewer lines per area.
   crossings_.push_back({line.cell, {point, 1 / std::max(cosine, kSteepest), line.number}});
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Several points of the surface for one sample: spread evenly over its Voronoi cell.
+// Several surface points per sample, spread evenly over its Voronoi cell.
 #pragma once
 
 #include <cstdint>
@@ -15,32 +15,31 @@ namespace opaline {
 /// True if a mesh of the world has samples, by its index; meshes beyond the end have none.
 std::vector<bool> meshes_of(std::span<const SurfaceSample> samples);
 
-/// Points of the cells of a batch of samples, found together: add the samples, project, read the points.
-/// A cell is all of the surface that is nearer to its sample than to any other on surfaces that do not face
-/// away, as sampling measures its area. Where two sheets lie closer together than the samples, it has parts
-/// of both.
+/// Points of the cells of a batch of samples, computed together: add the samples, project, read the points. A
+/// cell is the surface nearer to its sample than to any other on surfaces not facing away, as in the area
+/// measurement of sampling. Where two sheets are closer than the samples, it includes parts of both.
 class CellPoints {
  public:
   static constexpr std::uint32_t kMost = 24;  ///< lines through one cell
 
-  /// weight: the area that the point stands for, relative to the cell's other points.
+  /// weight: area represented by the point, relative to the cell's other points.
   struct Point {
     SurfacePoint at;
     float weight = 0;
     std::uint32_t line = 0;  ///< line of its cell, below kMost
   };
 
-  /// surface: whether a mesh of the world has samples; spacing: sqrt(area / samples), mm.
+  /// surface: flags of the meshes with samples; spacing: sqrt(area / samples), mm.
   CellPoints(const RayScene& rays, std::span<const SurfaceSample> samples, const std::vector<bool>& surface,
              float spacing);
 
-  /// Chooses lines through the cell of a sample, along its geometric normal, at low-discrepancy places of its
-  /// tangent plane nearer to it than to any of the neighbours; the index, and no seed, chooses their
-  /// rotation. Returns the cell's number in the batch.
+  /// Chooses lines through the cell of a sample, parallel to its geometric normal, at low-discrepancy points
+  /// of its tangent plane nearer to it than to any of the neighbours; the index alone, without a seed,
+  /// determines their rotation. Returns the cell's number in the batch.
   std::uint32_t add(std::uint32_t index, std::span<const std::uint32_t> neighbours);
 
-  /// Finds where the lines of all cells cross the outside of the surface within their cell. Some cross
-  /// nothing: the surface ends there or turns away by more than a right angle. Others cross several sheets.
+  /// Intersects the lines of all cells with the outside of the surface within their cell. Some have no
+  /// intersection, if the surface ends or turns away by more than a right angle; others have several.
   void project();
 
   /// Line by line.
@@ -73,13 +72,13 @@ class CellPoints {
   const RayScene& rays_;
   std::span<const SurfaceSample> samples_;
   const std::vector<bool>& surface_;
-  float radius_;  // no cell reaches farther
+  float radius_;  // no cell extends farther
   std::vector<Cell> cells_;
   std::vector<Bisector> bisectors_;
   std::vector<Line> lines_;
-  std::vector<std::pair<std::uint32_t, Point>> crossings_;  // with their cells, as they were found
+  std::vector<std::pair<std::uint32_t, Point>> crossings_;  // with their cells, unsorted
   std::vector<Point> points_;
-  std::vector<std::size_t> first_;  // into points_, of each cell and behind the last one
+  std::vector<std::size_t> first_;  // into points_, for each cell, and the end
 };
 
 }  // namespace opaline

@@ -14,8 +14,8 @@
 namespace opaline {
 namespace {
 
-// The first and the second half of the low-discrepancy points, each such a set itself, estimate the error of
-// their mean: its standard error is the difference of the halves' means times sqrt(n0 n1) / n.
+// Error estimate from the two halves of the low-discrepancy points, each low-discrepancy itself: the standard
+// error of the mean is the difference of the halves' means times sqrt(n0 n1) / n.
 class Halves {
  public:
   explicit Halves(int samples) : first_(samples / 2) {
@@ -33,20 +33,20 @@ class Halves {
   double weight0_, weight1_;
 };
 
-// Half of the rays are a worse set than all: how much worse depends on their number and the light, and a
-// single ray has no halves. What a point is off the nearer of two neighbours by, when points following each
-// other lie together, is noise, or a little more: the halves' errors are scaled to it on the whole, and never
-// raised.
+// Calibrates the error from halves. Half of the rays are less evenly distributed than all, by a factor
+// depending on their number and the light, and a single ray has no halves. With successive points close
+// together, the deviation from the nearer of two neighbours is at least the noise: the halves' errors are
+// scaled down to it in total, never up.
 void fit_to_neighbours(const std::vector<float>& weights, bool single, std::vector<float>& deviations) {
   const std::size_t n = weights.size();
   if (n < 3) return;
-  // Means of a normal distribution: the lesser of the two differences, and the absolute value.
+  // Means for a normal distribution: the smaller of two differences, and the absolute value.
   constexpr double kLesser = 0.71, kAbsolute = 0.80;
   double neighbours = 0, halves = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const float before = weights[i > 0 ? i - 1 : i + 2], after = weights[i + 1 < n ? i + 1 : i - 2];
     const float lesser = std::min(std::abs(weights[i] - before), std::abs(weights[i] - after));
-    if (single) deviations[i] = lesser;  // as often as not all light or none
+    if (single) deviations[i] = lesser;  // typically all light or none
     neighbours += double(lesser) / kLesser;
     halves += double(deviations[i]) / kAbsolute;
   }
@@ -67,7 +67,7 @@ void trace_transfers(const IrradianceInput& input, std::span<const Light> lights
     transfers[l].weights.resize(n);
     unblocked[l].resize(n);
   }
-  // A single ray a point: enough of them that many lie together.
+  // Batch size for single rays: enough points for coherence.
   constexpr std::size_t kSinglePoints = 4096;
   const std::size_t batch_size = is_delta(lights[0]) ? kSinglePoints : batch_points(input.light_samples);
   std::vector<std::vector<ErrorSums>> errors(lights.size(),
@@ -154,7 +154,7 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
                     light_seed(input.seed, lights[0]));
   if (input.is_together) batch.share_shadows();
   const Halves halves(batch.samples());
-  std::vector<std::array<double, 2>> sums;  // over the halves of a point's rays, light by light
+  std::vector<std::array<double, 2>> sums;  // by halves of a point's rays, and by light
   batch.reserve(std::min(batch_size, n));
   for (std::size_t begin = 0, count = 0; begin < n; begin += count) {
     count = std::min(n - begin, batch_size);

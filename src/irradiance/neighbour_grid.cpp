@@ -58,7 +58,7 @@ std::span<const std::uint32_t> NeighbourGrid::around(const Cell& cell,
   return {indices.data(), found};
 }
 
-// Where the cell's index is, or would be put.
+// Slot of the cell's index, or the free slot for it.
 std::size_t NeighbourGrid::slot_of(std::uint64_t key) const {
   std::size_t slot = (key * 0x9E3779B97F4A7C15ull) >> shift_;  // the top bits depend on all of the key
   while (slots_[slot] != kNone && cells_[slots_[slot]].key != key) slot = (slot + 1) & (slots_.size() - 1);

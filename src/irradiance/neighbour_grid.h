@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Surface samples in cubic cells, to find those around each other.
+// Grid of surface samples for neighbour search.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace opaline {
 
-/// A read-only hash grid over finished samples, cells as wide as the reach asked for. (SampleGrid, which
-/// grows while darts are thrown, has cells for its own radius and knows nothing of finished samples.)
+/// A read-only hash grid over finished samples, with cells as wide as the search radius. (SampleGrid, which
+/// grows during dart throwing, has cells for its own radius and no finished samples.)
 class NeighbourGrid {
  public:
   struct Cell {
@@ -32,7 +32,7 @@ class NeighbourGrid {
     return std::span(members_).subspan(cell.first, cell.count);
   }
 
-  /// The existing cells among the 27 around this one and itself, as indices into cells(): they hold all
+  /// Indices into cells() of the existing cells among the 27 around and including this one: they contain all
   /// samples within reach of its own.
   std::span<const std::uint32_t> around(const Cell& cell, std::array<std::uint32_t, 27>& indices) const;
 

@@ -7,8 +7,8 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kReach = 2;  // blocks around one whose rays tell of it, too
-// Rays that what is around a block counts for, and what all rays tell counts for there: measured, of little weight.
+constexpr std::size_t kReach = 2;  // distance of blocks with rays used for a block
+// Weights of the surrounding blocks and of all blocks, in rays; uncritical.
 constexpr float kOfAround = 1, kOfAll = .5f;
 
 }  // namespace
@@ -20,7 +20,7 @@ RoomShadows::RoomShadows(const EnvironmentPicture& room) : room_(room) {
   }
 }
 
-// Sums over a square of blocks; the picture's left side is beside its right one.
+// Sums over a square of blocks, periodic in the azimuth.
 void RoomShadows::spread(std::vector<float>& counts) {
   const std::size_t columns = room_.block_columns(), rows = counts.size() / columns;
   spread_.assign(counts.size(), 0);

@@ -11,8 +11,8 @@
 
 namespace opaline {
 
-/// Visibility of each block of an environment map from neighbouring points. The points form two halves; the rays of one
-/// half predict the visibility for the other, so a prediction is independent of its own rays.
+/// Visibility of each block of an environment map from neighbouring points. The points form two halves; the
+/// rays of one half predict the visibility for the other, so a prediction is independent of its own rays.
 class RoomShadows {
  public:
   explicit RoomShadows(const EnvironmentPicture& room);
@@ -23,20 +23,20 @@ class RoomShadows {
     of.tried[block] += 1;
     of.lit[block] += is_lit ? 1 : 0;
   }
-  /// To be called when all rays are added; has_dark: of each half, whether anything was in the way of its rays.
+  /// Call after adding all rays; has_dark: per half, true if any of its rays was blocked.
   void estimate(const std::array<bool, 2>& has_dark);
 
-  /// The part of a block's light reaching points of a half, in [0, 1].
+  /// Visible fraction of a block for points of a half, in [0, 1].
   float open(std::size_t half, std::size_t block) const { return halves_[1 - half].open[block]; }
-  /// The irradiance of a surface of that half, were this so; as EnvironmentPicture::unshadowed.
-  /// in    normal: unit, in the picture's space
+  /// Predicted irradiance of a surface of that half, as in EnvironmentPicture::unshadowed.
+  /// in    normal: unit, in the image's space
   RgbF irradiance(std::size_t half, const Vec3d& normal);
 
  private:
   struct Half {
     std::vector<float> tried, lit, open;  // block by block
     std::vector<std::pair<std::size_t, EnvironmentPicture::Unshadowed>>
-        known;  // by the nearest normal of the room's
+        known;  // by the environment's nearest tabulated normal
   };
   void spread(std::vector<float>& counts);
 

@@ -21,23 +21,23 @@
 
 namespace opaline {
 
-/// Points whose rays are traced at once: enough for coherent batches, few enough to bound their memory.
+/// Points per batch of rays: enough for coherence, few enough for memory.
 inline std::size_t batch_points(int light_samples) {
   return std::clamp<std::size_t>(16384 / std::size_t(light_samples), 1, 256);
 }
 
-/// How many lights, from the first on, share their rays.
+/// Number of lights, from the first on, sharing their rays.
 inline std::size_t sharing_rays(std::span<const Light> lights) {
   const auto other = std::find_if(lights.begin() + 1, lights.end(),
                                   [&](const Light& l) { return !share_rays(lights[0], l); });
   return std::size_t(other - lights.begin());
 }
 
-/// Shadow rays of a batch of points towards one light, with what each carries if nothing blocks it; or towards
-/// lights sharing their rays.
+/// Shadow rays of a batch of points towards one light, or towards lights sharing their rays, with each ray's
+/// unoccluded contribution.
 class ShadowBatch {
  public:
-  /// samples: rays a point; 1 for lights without an area, whatever is asked. Of ManyLights each goes to one of them.
+  /// samples: rays per point; 1 for lights without an area. For ManyLights, each ray goes to one of them.
   ShadowBatch(const RayScene& rays, std::span<const Light> lights, double eta, int samples,
               std::uint64_t seed)
       : rays_(rays),
@@ -51,13 +51,13 @@ class ShadowBatch {
   ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
       : ShadowBatch(rays, std::span(&light, 1), eta, samples, seed) {}
 
-  /// To be called where points following each other do not lie together: their rays are sorted before they are traced.
+  /// Call for incoherent points: sorts their rays before tracing.
   void sort_rays() { scattered_ = samples_ == 1; }
 
-  /// To be told where points lie together: what hides a room from some tells of others.
+  /// Call for coherent points: neighbours share the visibility of an environment.
   void share_shadows() { shares_shadows_ = true; }
 
-  /// To be told where `trace` is to be asked for directions.
+  /// Call before directions() is needed.
   void keep_directions() { keeps_directions_ = true; }
 
   int samples() const { return samples_; }
@@ -67,8 +67,8 @@ class ShadowBatch {
     shadow_.reserve(points * std::size_t(samples_));
   }
 
-  /// Adds all rays of one point; `index` chooses its rotation of the low-discrepancy points, `first` where
-  /// among them it begins; `lobe` as in for_each_ray.
+  /// Adds all rays of one point; `index` chooses its rotation of the low-discrepancy points, `first` its
+  /// start among them; `lobe` as in for_each_ray.
   void add(const SurfacePoint& point, std::uint64_t index, std::uint64_t first = 0,
            const Lobe* lobe = nullptr) {
     std::array<double, 2> shift{};
@@ -86,9 +86,9 @@ class ShadowBatch {
     }
   }
 
-  /// Calls use(light, point in batch, sample, contribution, contribution were nothing in the way) for each ray in
-  /// order, then forgets them. What chance has no part in is given in two, half to a sample of either half of a
-  /// point's: so they differ by what they are in error.
+  /// Calls use(light, point in batch, sample, contribution, unoccluded contribution) for each ray in order,
+  /// then discards them. Deterministic parts are split equally over samples of both halves, so the halves
+  /// differ by their error only.
   template <class Use>
   void trace_lights(const Use& use) {
     if (scattered_ && shadow_.size() > kSorted)
@@ -121,20 +121,20 @@ class ShadowBatch {
     directions_.clear();
   }
 
-  /// Where there is one light: use(point in batch, sample, ...).
+  /// For one light: use(point in batch, sample, ...).
   template <class Use>
   void trace(const Use& use) {
     trace_lights([&](std::size_t, std::size_t p, int s, float e, float free) { use(p, s, e, free); });
   }
 
-  /// Towards the light, of a point's sample: while `use` is called.
+  /// Direction of a point's sample; valid during `use`.
   const Vec3f& direction(std::size_t point, int sample) const {
     return directions_[point * std::size_t(samples_) + std::size_t(sample)];
   }
 
  private:
-  static constexpr std::size_t kSorted = 256;       // rays that Embree takes at once
-  static constexpr float kMeanCosine = 2.0f / 3;    // mean cosine of even light
+  static constexpr std::size_t kSorted = 256;       // rays per Embree packet stream
+  static constexpr float kMeanCosine = 2.0f / 3;    // mean cosine under uniform illumination
   static constexpr std::size_t kFewestOfRoom = 32;  // rays: a ratio of sums over fewer is biased
   // Minimum pools of neighbouring points, and rays of a pool, for a prediction of visibility.
   static constexpr std::size_t kFewestPools = 4, kFewestOfTogether = 256;
@@ -157,7 +157,7 @@ class ShadowBatch {
     }
   }
 
-  // Neighbours in the order of a draw are alike: one after the other they go to the halves of a point's samples.
+  // Neighbours in the order of a draw are similar: they alternate between the halves of a point's samples.
   void add_drawn(const SurfacePoint& point, std::uint64_t index, const std::array<double, 2>& shift,
                  std::uint64_t first, const Lobe* lobe) {
     constexpr double kGolden = 0.61803398874989484820;
@@ -224,7 +224,7 @@ class ShadowBatch {
     }
   }
 
-  // Points that follow each other and share a sequence are a pixel's: a pool.
+  // Successive points sharing a sequence belong to one pixel, and form a pool.
   void add_of_room(const SurfacePoint& point, std::uint64_t index, const std::array<double, 2>& shift,
                    std::uint64_t first) {
     if (pools_.empty() || index != pooled_) pools_.push_back(means_.size());
@@ -251,8 +251,8 @@ class ShadowBatch {
                          draw.expected, 0, false});
   }
 
-  // Control variate: the unshadowed sum of all lights is exact, so the shadow rays of the other samples correct a sample. The
-  // mean is unchanged, because samples are independent.
+  // Control variate: the unshadowed sum of all lights is exact, so the shadow rays of the other samples
+  // correct a sample. The mean is unchanged, because samples are independent.
   template <class Use>
   void use_controlled(std::size_t point, const Use& use) const {
     const std::size_t samples = std::size_t(samples_), first = point * samples, lights = lights_.size();
@@ -277,8 +277,8 @@ class ShadowBatch {
     }
   }
 
-  // Control variate: the unshadowed irradiance of an environment is exact. The rays of a pool estimate the visible fraction
-  // per channel; the rays of a point add their difference from that estimate.
+  // Control variate: the unshadowed irradiance of an environment is exact. The rays of a pool estimate the
+  // visible fraction per channel; the rays of a point add their difference from that estimate.
   template <class Use>
   void use_pool(std::size_t begin, std::size_t end, const Use& use) const {
     const std::size_t samples = std::size_t(samples_), lights = lights_.size();
@@ -309,9 +309,10 @@ class ShadowBatch {
     return p + 1 < pools_.size() ? pools_[p + 1] : means_.size();
   }
 
-  // Every other pixel is one half. What reaches a pixel is what it may expect by the other half's rays, block by block of
-  // the room, and as much as its own rays find more: without bias, for what is expected does not depend on them. Where
-  // that is below 0, others give as much.
+  // Control variate by block: the rays of one half of the pixels, every other one, predict the light at the
+  // other half, block by block of the environment; a pixel's own rays add their difference. Unbiased, as
+  // predictions are independent of the pixel's rays. Negative results are clamped, and subtracted from
+  // others.
   template <class Use>
   void use_together(const Use& use) const {
     const std::size_t samples = std::size_t(samples_), lights = lights_.size();
@@ -353,7 +354,7 @@ class ShadowBatch {
         }
   }
 
-  // Points following each other need not lie together, and rays that do are traced in half the time.
+  // Successive points may be incoherent; sorted rays trace in half the time.
   void trace_sorted() {
     constexpr float kCells = 1023;
     Vec3f low = shadow_[0].origin, high = low;
@@ -376,14 +377,14 @@ class ShadowBatch {
   float eta_;
   int samples_;
   std::uint64_t seed_;
-  const ManyLights* many_;        // null: a light that is not drawn
+  const ManyLights* many_;        // null: a single light
   const EnvironmentLight* room_;  // null: another light
-  float mean_transmitted_;        // about as much as the boundary lets in
+  float mean_transmitted_;        // approximate transmittance of the boundary
   std::vector<LightTree::Drawn> drawn_;
   bool scattered_ = false, keeps_directions_ = false, shares_shadows_ = false;
   std::vector<float> carried_;
-  /// One sample of many lights: its unshadowed contribution over its probability, and the mean of that over all draws
-  /// of the sample.
+  /// One sample of many lights: its unoccluded contribution over its probability, and the mean of that over
+  /// all draws of the sample.
   struct Control {
     RgbF here, mean;
     float expected;
@@ -393,7 +394,7 @@ class ShadowBatch {
   std::vector<Control> controls_;   // empty: none
   std::vector<RgbF> means_;         // means of points lit by an environment
   std::vector<Vec3d> normals_;      // normals of these, in the space of the environment map
-  std::vector<std::size_t> pools_;  // the first point of each
+  std::vector<std::size_t> pools_;  // first point of each
   std::uint64_t pooled_ = 0;        // the last point's sequence
   std::vector<Vec3f> directions_;
   std::vector<Ray> shadow_, sorted_;

@@ -13,15 +13,13 @@
 namespace opaline {
 namespace {
 
-// Samples this many spacings apart are neighbours: those sharing a side of their cells, and few more.
+// Distance of neighbours, in spacings: includes those with adjacent cells, and few more.
 constexpr float kReach = 1.5f;
-// An edge is sharp where neighbours facing the light see parts of it that differ by more than kChange, and
-// where that is worth more than kOfMean of the light's mean weight. Lower
-// ones (.25, .1) were measured on bunny-marble and gain nothing.
+// Least difference of the visible fractions of neighbours facing a light, and least difference over the
+// light's mean weight, for a shadow edge.
 constexpr float kChange = .5f, kOfMean = .25f;
 
-// Least and greatest visible part of one light at some samples, and the brightest of them were nothing in the
-// way.
+// Smallest and largest visible fraction of a light at a set of samples, and the largest unoccluded weight.
 struct Span {
   float low = 1, high = 0, brightest = 0;
   void add(const Span& s) {
@@ -43,7 +41,7 @@ struct Refined {
   float weight;
 };
 
-// A sample beside an edge in one light, and the number of its cell.
+// A sample beside an edge of a light's shadow, and the number of its cell.
 struct Mark {
   std::uint32_t sample, cell;
 };
@@ -67,7 +65,7 @@ class EdgeFinder {
       for (const auto& [position, i] : grid_.members(grid_.cells()[c]))
         for (std::size_t l = 0; l < transfers.size(); ++l)
           spans_[c * transfers.size() + l].add(span_of(l, i));
-    // Half a light is missing somewhere beside an edge; most cells are far from any such place.
+    // Conservative test for an edge nearby; false for most cells.
     constexpr float kMissing = 1 - 0.99f * kChange;
     std::array<std::uint32_t, 27> indices;
     for (std::size_t i = 0; i < spans_.size(); ++i)
@@ -78,8 +76,8 @@ class EdgeFinder {
 
   std::size_t cells() const { return grid_.cells().size(); }
 
-  /// Calls use(sample, its neighbours and itself, lights that change sharply there) for each such sample of a
-  /// cell.
+  /// Calls use(sample, its neighbours and itself, lights with an edge there) for each sample of a cell beside
+  /// an edge.
   template <class Use>
   void for_edges(std::size_t cell, const Use& use) const {
     if (!has_edge_near_[cell]) return;
@@ -121,12 +119,12 @@ class EdgeFinder {
   float reach_;
   NeighbourGrid grid_;
   std::vector<Span> spans_;          // cells x lights
-  std::vector<bool> has_edge_near_;  // one a cell; true at times where there is none
-  std::vector<float> floors_;        // one a light
+  std::vector<bool> has_edge_near_;  // one per cell; may be true without an edge
+  std::vector<float> floors_;        // one per light
 };
 
-// Mean weight of one light over the points of each marked sample's cell. An area light's own samples are
-// dealt out among the points, twice as many in all as a single point has.
+// Mean weight of one light over the points of each marked sample's cell. An area light's samples are
+// distributed over the points, twice as many as for a single point.
 void average(const IrradianceInput& input, std::uint32_t light, std::span<const Mark> marks,
              const CellPoints& points, std::vector<Refined>& refined) {
   const bool delta = is_delta(input.lights[light]);
@@ -165,7 +163,7 @@ struct Shift {
     squares += moved * moved;
     ray_noise += noise * noise;
   }
-  /// The sum beyond its own noise, as far as it was the noise of few rays that chose the samples.
+  /// The part of the sum due to the selection of samples by noise of few rays, beyond the sum's own noise.
   double by_chance() const {
     if (!(squares > 0)) return 0;
     return std::copysign(std::sqrt(std::max(0.0, sum * sum - squares)), sum) *
@@ -173,8 +171,7 @@ struct Shift {
   }
 };
 
-/// Standard deviation of a weight found by so many rays, of which each sees a light or not. Of one ray the mean over
-/// the cell tells.
+/// Standard deviation of a weight from this number of binary rays; for one ray, by the mean over the cell.
 double ray_noise(float weight, float mean, float unblocked, int rays) {
   if (!(unblocked > 0)) return 0;
   const double seen = std::clamp(double((rays > 1 ? weight : mean) / unblocked), 0.0, 1.0);

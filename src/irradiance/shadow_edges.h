@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples beside shadow edges: what enters their whole cell, not one point of it.
+// Transmitted light averaged over the cells of samples beside shadow edges.
 #pragma once
 
 #include <span>
@@ -9,17 +9,16 @@
 
 namespace opaline {
 
-/// A point with the normal by which light enters there.
+/// The point with the normal used for transmission.
 inline SurfacePoint entered_at(const IrradianceInput& input, SurfacePoint point) {
   if (input.geometric_normals) point.normal = point.geometric;
   return point;
 }
 
-/// Replaces, light by light, the weight of each sample beside a shadow's edge by its mean over points of the
-/// sample's Voronoi cell; all other weights keep their bits. An edge is where the visible part of the light
-/// changes from one sample to the next; where a surface merely turns away from the light, or nears it, there
-/// is none.
-/// in    unblocked: one array a light, what the weights would be were nothing in the way
+/// Replaces, per light, the weight of each sample beside a shadow edge by its mean over points of the
+/// sample's Voronoi cell; all other weights keep their bits. An edge is a change of the light's visible
+/// fraction between samples, not a change of the surface's orientation or distance.
+/// in    unblocked: unoccluded weights, one array per light
 void refine_shadow_edges(const IrradianceInput& input, std::span<const std::vector<float>> unblocked,
                          std::span<LightTransfer> transfers);
 

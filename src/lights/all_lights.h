@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every kind of light, with the functions that light_kind.h lists.
+// Every kind of light, with the functions listed in light_kind.h.
 #pragma once
 
 #include "lights/directional_light.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a tree of lights is built.
+// Construction of a light tree.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace opaline {
 
-/// True if trees can hold the light: its kind has a place, a way it shines and a brightest intensity.
+/// True if trees can contain the light: its kind has a position, an emission cone and a maximum intensity.
 bool fits_into_tree(const Light& light);
 
 struct BuiltLightTree {
   std::vector<LightTree::Node> nodes;  ///< the root first
-  std::vector<std::uint32_t> order;    ///< the lights as the leaves have them, one each
+  std::vector<std::uint32_t> order;    ///< the lights in the leaves' order
 };
-/// Nodes are halved, by the number of lights, across the longest side of the box around their centres: depths differ
+/// Halves nodes by number of lights, across the longest side of the box around their centres: depths differ
 /// by one at most.
-/// in    lights: at least one, each of which fits_into_tree
+/// in    lights: at least one, all with fits_into_tree
 BuiltLightTree build_light_tree(std::span<const Light> lights);
 
 }  // namespace opaline

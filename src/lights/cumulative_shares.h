@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables of cumulative shares, from which one is drawn.
+// Sampling from tables of cumulative fractions.
 #pragma once
 
 #include <algorithm>
@@ -7,9 +7,9 @@
 
 namespace opaline {
 
-// The fraction of [0, 1) that `u` lies in, by its end; u becomes its place within.
+// Index of the interval containing `u`, given the intervals' ends; u becomes its relative position within.
 inline std::size_t draw(const float* ends, std::size_t count, double& u) {
-  // As upper_bound, which would wait for each comparison before the next; the last end is 1.
+  // Like upper_bound, but branchless; the last end is 1.
   const float wanted = float(u);
   int before = 0;
   for (std::size_t k = 0; k < count; ++k) before += ends[k] <= wanted ? 1 : 0;
@@ -19,8 +19,8 @@ inline std::size_t draw(const float* ends, std::size_t count, double& u) {
   return i;
 }
 
-// Running sums to shares of the last. Where the sum does not grow there is no share, not even at the end of the table: what
-// rounding left there would be drawn once in millions and then count for as many.
+// Normalises running sums. Intervals of zero width at the end of the table become exactly empty: rounding
+// would leave them a tiny probability with a huge weight.
 inline void normalize(float* ends, std::size_t count, double sum) {
   const float whole = ends[count - 1];
   for (std::size_t i = 0; i < count; ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sun: light from infinitely far, parallel or from a small disc.
+// Light from infinitely far, parallel or from a small disc.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-// Smaller discs are points: single precision neither distinguishes their directions nor holds their radiance.
+// Smaller discs are points: single precision can represent neither their directions nor their radiance.
 inline bool is_parallel(const DirectionalLight& light) {
   constexpr double kLeastAngle = .004;
   return light.angle < kLeastAngle;
@@ -96,7 +96,7 @@ inline RgbF background(const DirectionalLight& light, const Vec3f& direction) {
 }
 
 inline LightExtent extent(const DirectionalLight& light) {
-  if (!is_parallel(light)) return {};  // no one direction: taken as all around
+  if (!is_parallel(light)) return {};  // no single direction: treated as omnidirectional
   return {.towards = -light.direction};
 }
 

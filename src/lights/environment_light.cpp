@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A picture that shines from all around.
+// Environment map as a light.
 #include <cmath>
 #include <numbers>
 
@@ -29,7 +29,8 @@ Vec3d in_picture(const EnvironmentLight& light, const Vec3f& direction) {
   return turned(Vec3d(direction), -light.rotation);
 }
 
-/// Radiance of the environment map in a direction. Its channels are separate lights, evaluated one after the other.
+/// Radiance of the environment map in a direction. Its channels are separate lights, evaluated one after the
+/// other.
 RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction) {
   struct Asked {
     std::uint64_t picture = 0;

@@ -26,8 +26,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kMostColumns = 1024, kBlockColumns = 64, kBrightest = 32;
-// How far a normal is from its table's, at most, and what directions weigh that such a normal alone sees: radians, and
-// as a cosine.
+// Largest angle between a normal and its table's, radians; and least cosine of directions visible from such
+// normals alone.
 constexpr double kBetweenNormals = .15, kLeastCosine = .05;
 
 // Unfolded normal of the unfolded octahedron, both in [-1, 1].
@@ -44,7 +44,7 @@ std::string place_text(std::size_t pixel, std::size_t width) {
   return "pixel (" + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + ")";
 }
 
-/// Pixels below zero, as sharp filters leave them beside what is bright: 0 in their place is nearest to what was meant.
+/// Negative pixels, from the ringing of sharp filters beside bright areas; replaced by 0.
 struct NegativePixels {
   std::size_t count = 0, lowest_at = 0;
   float lowest = 0;
@@ -57,10 +57,10 @@ struct NegativePixels {
   }
 };
 
-/// Sums over an environment, times weights, stay finite in single precision.
+/// Limits values so weighted sums over an environment stay finite in single precision.
 constexpr float kMostRadiance = 1e30f;
 
-/// The colours of the display window, 0 beside the data window.
+/// Colours of the display window, 0 outside the data window.
 std::vector<RgbF> colours_of(const std::string& path, const Image& image, NegativePixels& negative) {
   const ChannelPlaces places = channel_places(image.channels, path);
   if (std::min({places[0], places[1], places[2]}) < 0)
@@ -114,7 +114,7 @@ EnvironmentPicture::EnvironmentPicture(std::size_t width, std::size_t height, st
 std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::string& path) {
   static std::mutex mutex;
   static std::map<std::string, KnownPicture> known;
-  std::error_code missing;  // read_image says so
+  std::error_code missing;  // reported by read_image
   const auto time = std::filesystem::last_write_time(path, missing);
   const auto bytes = std::filesystem::file_size(path, missing);
   const std::lock_guard lock(mutex);
@@ -161,8 +161,9 @@ void EnvironmentPicture::make_means() {
   }
 }
 
-// Rays that a coat mirrors see the picture interpolated: beside a lamp they meet some of it in a dark cell, and would be
-// worth as much as the lamp if no light sample went there.
+// Importance of cells, including some of their neighbours': reflected rays see the image interpolated, so a
+// dark cell beside a light contains some of its radiance, and without light samples there such rays would
+// have huge weights.
 void EnvironmentPicture::make_importance() {
   constexpr float kOfNeighbours = .04f;
   for (std::size_t r = 0; r < rows_; ++r)
@@ -218,7 +219,7 @@ void EnvironmentPicture::make_blocks() {
   brightest_.resize(count);
 }
 
-// In closed form, for the draws of a cell are uniform over its directions.
+// Closed form, as samples are uniform over the directions of a cell.
 std::vector<EnvironmentPicture::BlockIntegral> EnvironmentPicture::block_integrals() const {
   const auto longitude = [this](std::size_t column) {
     return (.5 - double(std::min(column * step_, width_)) / double(width_)) * 2 * kPi;

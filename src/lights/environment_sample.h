@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Directions drawn for each shadow ray that is to show what a lobe mirrors.
+/// Candidate directions per shadow ray for a specular lobe.
 inline constexpr int kLobeDraws = 4;
 
 inline constexpr std::size_t kMostAtOnce = 8;
@@ -23,7 +23,7 @@ struct RoomLobe {
   EnvironmentPicture::InLobe blocks;
 };
 RoomLobe room_lobe(const EnvironmentLight& light, const Vec3f& normal, const Lobe& lobe);
-/// Null: not known for this light.
+/// Null: not computed for this light.
 inline const EnvironmentPicture::InLobe* known_blocks(const EnvironmentLight& light, const Lobe& lobe) {
   const RoomLobe* const known = lobe.in_room;
   const bool is_this =
@@ -31,27 +31,27 @@ inline const EnvironmentPicture::InLobe* known_blocks(const EnvironmentLight& li
   return is_this ? &known->blocks : nullptr;
 }
 
-/// A sample of all channels, as sample_light gives it for each.
+/// Sample of all channels, with the weights of sample_light.
 struct EnvironmentSample {
   Vec3f direction;
   RgbF weights;
-  RgbF unshadowed;          ///< about the irradiance that it brings were nothing in the way
+  RgbF unshadowed;          ///< approximate irradiance without occlusion
   std::uint32_t block = 0;  ///< block of the environment map
 };
 
-/// in    unit_squares: one a sample, at most kMostAtOnce
-///       lobe: if not null, for which they are drawn; what is known of it is used
+/// in    unit_squares: one per sample, at most kMostAtOnce
+///       lobe: null, or the lobe to sample for, with its table if present
 void sample_environment(const EnvironmentLight& light, const Vec3f& normal,
                         std::span<const std::array<double, 2>> unit_squares, int samples,
                         std::span<EnvironmentSample> drawn, const Lobe* lobe = nullptr);
 
-/// A direction as the light's picture has it.
+/// A direction in the coordinates of the light's image.
 Vec3d in_picture(const EnvironmentLight& light, const Vec3f& direction);
 
-/// Radiance of the light's picture in a direction.
+/// Radiance of the light's image in a direction.
 RgbF radiance_towards(const EnvironmentLight& light, const Vec3f& direction);
 
-/// The mean of the sum over samples of what they have as `unshadowed`.
+/// Expected sum of the samples' `unshadowed`.
 RgbF unshadowed(const EnvironmentLight& light, const Vec3f& normal);
 
 }  // namespace opaline

@@ -12,8 +12,8 @@
 namespace opaline {
 namespace {
 
-// Added to cosines, at the surface and off a spot's way: more than rounding may take from those that lights need to be
-// seen.
+// Added to cosines, at the surface and off a spot's axis, as a bound of rounding, so visible lights keep a
+// nonzero probability.
 constexpr float kTrace = 1e-5f;
 constexpr float kLeastSquare = 1e-30f;
 
@@ -52,7 +52,7 @@ LampTable::LampTable(std::span<const Light> lights, std::span<const std::uint32_
   for (std::vector<float>& channel : colours_) channel.resize(weights());
 }
 
-// Four lamps at once.
+// Four lights at once.
 template <bool has_spots>
 void LampTable::weigh_block(const Vec3f& point, const Vec3f& normal, std::size_t first,
                             float* weights) const {
@@ -121,7 +121,7 @@ WeighedDraw::WeighedDraw(const LampTable& lamps, std::span<const float> weights,
     sum += sums_[b];
   }
   if (!(sum > 0)) return;
-  // Weights of certain lights go to the others, so more lights become certain.
+  // Limiting certain lights to 1 raises the other weights, so more lights become certain.
   scale_ = draws / sum;
   for (std::size_t sure = 0;;) {
     std::size_t now = 0;
@@ -164,12 +164,12 @@ std::size_t WeighedDraw::take_sure(std::span<Stratum> strata) const {
   return taken;
 }
 
-/// Lays lamps side by side; lengths in strata.
+/// Places lights side by side; lengths in strata.
 class WeighedDraw::OtherLamps {
  public:
   explicit OtherLamps(std::span<Stratum> strata) : strata_(strata) { begin_stratum(0); }
 
-  /// True if so much fits into the stratum at hand, and is not drawn from there.
+  /// Adds a length to the current stratum; true if its sample is not in it.
   bool passes(double length) const {
     const double end = end_ + length;
     return end < border_ && (place_ < end_ || place_ >= end);
@@ -203,9 +203,9 @@ class WeighedDraw::OtherLamps {
   }
 
   std::span<Stratum> strata_;
-  std::size_t stratum_ = 0;  // at hand
-  double border_, place_;    // its end, and where it is drawn
-  double end_ = 0;           // end of the lamps so far
+  std::size_t stratum_ = 0;  // current
+  double border_, place_;    // its end, and its sampled position
+  double end_ = 0;           // end of the lights so far
 };
 
 void WeighedDraw::take_others(std::span<Stratum> strata) const {

@@ -8,7 +8,7 @@
 namespace opaline {
 namespace {
 
-/// The member that is the light's colour; a kind with another name for it does not compile.
+/// Colour member of a light; a kind without one does not compile.
 auto& colour_of(auto& kind) {
   if constexpr (requires { kind.intensity; })
     return kind.intensity;
@@ -47,7 +47,7 @@ bool is_delta(const Light& light) {
 }
 
 int shadow_rays(const Light& light, int light_samples) {
-  constexpr int kFewer = 3;  // measured: src/irradiance/README.md
+  constexpr int kFewer = 3;  // src/irradiance/README.md
   if (is_delta(light)) return 1;
   const auto* many = std::get_if<ManyLights>(&light.source);
   return many == nullptr || many->tree->has_area() ? light_samples : (light_samples + kFewer - 1) / kFewer;

@@ -13,18 +13,18 @@
 namespace opaline {
 namespace {
 
-// Nodes are split until their ball is this much smaller than its distance.
+// Largest ratio of a node's radius to its distance without splitting.
 constexpr float kWide = .5f;
-// Those that bring a lobe more than this fraction of the most are split until they are narrower than it.
+// Fraction of the largest reflected contribution above which nodes are split to the width of the lobe.
 constexpr float kMirrored = .03f;
-// Fraction of a bound on the cosine at the surface in a node's importance; the rest is the cosine of its middle. Less than
-// .25 is no better in the mean, and worse at its worst (city of 1000: max 26 % in place of 25 % at .1, 86 % at .03).
+// Weight of the cosine bound at the surface in a node's importance; the rest is the cosine of its centre.
+// src/irradiance/README.md has the comparison.
 constexpr float kBound = .25f;
-// Added to cosines: what rounding may take from those that lights need to be seen.
+// Added to cosines as a bound of rounding, so visible lights keep a nonzero probability.
 constexpr float kRounding = 1e-3f;
-// Lights without an area that are weighed one by one: so many take as long as the nodes of a cut.
+// Maximum of lights without an area for individual weights: they take as long as the nodes of a cut.
 constexpr std::size_t kMostWeighed = WeighedDraw::kMost;
-// As many nodes as a cut has at most, but for those that its last ones have beside them on their way from the root.
+// Maximum nodes of a cut, and reserve for the siblings on the last path.
 constexpr std::size_t kMostInCut = 448, kMostDepth = 64;
 
 /// Cosine and sine of an angle in [0, pi].
@@ -40,8 +40,7 @@ struct Angle {
 };
 
 std::uint64_t hash_of(std::span<const Light> lights) {
-  constexpr std::uint64_t kVersion =
-      3;  // raise it where the same lights are drawn otherwise: results are kept by the hash
+  constexpr std::uint64_t kVersion = 3;  // raise on changes of the sampling: results are cached by the hash
   std::uint64_t hash = hash_bits(kVersion, lights.size());
   const auto add = [&](double value) { hash = hash_bits(hash, std::bit_cast<std::uint64_t>(value)); };
   for (const Light& light : lights) {
@@ -52,9 +51,9 @@ std::uint64_t hash_of(std::span<const Light> lights) {
   return hash;
 }
 
-/// Fraction of their brightness that a node's lights have towards a point, at most.
-/// in    cosine: of the angle from the node's way to the point, from its middle; ball: sine of half the angle that the
-///       node's ball fills from there
+/// Upper bound of the lights' emission towards a point, over their maximum.
+/// in    cosine: of the angle between the node's axis and the point, from its centre; ball: sine of half the
+///       angle subtended by the node's ball
 double facing(const LightTree::Node& node, float cosine, float ball) {
   const Angle off = Angle::of_cosine(std::clamp(double(cosine), -1.0, 1.0))
                         .less({double(node.cos_half), double(node.sin_half)})
@@ -64,7 +63,7 @@ double facing(const LightTree::Node& node, float cosine, float ball) {
   return node.fades_by_square ? share * share : share;
 }
 
-/// True if a node's lights are alike at a place.
+/// True if a node's lights are equivalent at a point.
 bool is_narrow(const LightTree::Node& node, const LightTree::Place& at) {
   const Vec3f to = node.center - at.point;
   const float d2 = dot(to, to), r2 = node.radius * node.radius;
@@ -87,7 +86,7 @@ std::optional<Rgb> common_emission_of(std::span<const Light> lights) {
 
 }  // namespace
 
-/// Nodes that are all lights together, and how many lights to draw from each.
+/// Nodes partitioning all lights, and the number of samples of each.
 class LightTree::Cut {
  public:
   struct Part {
@@ -98,7 +97,7 @@ class LightTree::Cut {
   void add(std::uint32_t node, double importance) { parts_[size_++] = {node, importance, 0}; }
   std::span<Part> parts() { return {parts_.data(), size_}; }
 
-  /// By importance, but no more than most(node) of each.
+  /// Distributes samples by importance, with at most most(node) of each.
   void share_out(double rays, const auto& most) {
     for (bool has_changed = true; has_changed;) {
       has_changed = false;
@@ -126,8 +125,8 @@ class LightTree::Cut {
   std::size_t size_ = 0;
 };
 
-/// Places 0, 1, ... of a draw lie at random, random + 1, ... of the lights in their order, each of which is as long as
-/// it is expected to be drawn.
+/// Systematic sampling at random, random + 1, ... of the lights in order, with lengths equal to their
+/// expected samples.
 class LightTree::Slots {
  public:
   Slots(const Place& place_, double random, std::span<Drawn> drawn)
@@ -138,7 +137,7 @@ class LightTree::Slots {
     const double within = (random_ + double(next_) - begin) / (end - begin);
     drawn_[next_++] = {light, float(end - begin), std::clamp(float(within), 0.f, 0x1.fffffep-1f)};
   }
-  /// Draws nothing.
+  /// Skips a sample.
   void skip() { ++next_; }
 
   const Place& place;
@@ -173,14 +172,14 @@ LightExtent LightTree::extent() const {
   return {.center = Vec3d(root.center), .radius = double(root.radius), .width = 2 * double(root.radius)};
 }
 
-// The cosine at the surface is between that of the ball's centre and a bound of all its lights' cosines, which is
-// positive where that of any is. The latter alone would give most to wide nodes.
+// The cosine at the surface is interpolated between that of the ball's centre and an upper bound over its
+// lights. The bound alone is positive for all visible lights, but overestimates wide nodes.
 double LightTree::importance(const Node& node, const Place& at) {
   const Vec3f to = node.center - at.point;
   const float d2 = dot(to, to), r2 = node.radius * node.radius;
   if (d2 <= r2) return r2 > 0 ? node.brightness / double(r2) : 0;
   const float per_d = 1 / std::sqrt(d2),
-              ball = node.radius * per_d;  // the sine of half of what the ball fills
+              ball = node.radius * per_d;  // sine of half the subtended angle
   const float middle = dot(at.normal, to) * per_d, bound = std::min(1.0f, middle + ball + kRounding);
   if (!(bound > 0)) return 0;
   const float cosine = at.lobe != nullptr ? mirrored(*at.lobe, dot(at.lobe->mirrored, to) * per_d + ball)
@@ -213,7 +212,7 @@ void LightTree::draw(const Place& at, double random, std::uint64_t key, std::spa
   }
 }
 
-/// Draws from a node's lights, which lie in [begin, end) together.
+/// Samples a node's lights, with total length [begin, end).
 void LightTree::descend(std::uint32_t node, double begin, double end, Slots& slots) const {
   if (!slots.any_before(end)) return;
   const Node& own = nodes_[node];
@@ -236,7 +235,7 @@ void LightTree::descend(std::uint32_t node, double begin, double end, Slots& slo
   while (slots.any_before(end)) slots.skip();
 }
 
-// Those that are drawn surely first.
+// Certain lights first.
 void LightTree::draw_weighed(const Place& at, double random, std::uint64_t key,
                              std::span<Drawn> drawn) const {
   std::array<float, kMostWeighed> values;

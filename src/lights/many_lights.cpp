@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many lights as one: a tree of them, from which each sample draws one.
+// Many lights as one: a light tree, sampled one light at a time.
 #include <algorithm>
 #include <array>
 
@@ -10,10 +10,10 @@ namespace opaline {
 namespace {
 
 bool is_dark(const Light& light) {
-  return is_delta(light) && emission(light) == Rgb{};  // others hide what is behind them
+  return is_delta(light) && emission(light) == Rgb{};  // others occlude the background
 }
 
-/// One tree holds lights of one kind.
+/// A tree contains lights of one kind.
 constexpr std::array<const char*, 3> kKinds{"many lights without an area", "many lights with an area",
                                             "many lights with an area that the camera does not see"};
 
@@ -21,7 +21,7 @@ std::size_t kind_of(const Light& light) {
   return is_delta(light) ? 0 : light.is_seen ? 1 : 2;
 }
 
-/// Lights that trees can hold, by their kinds.
+/// Lights for trees, by kind.
 std::array<std::vector<Light>, kKinds.size()> kinds_of(std::span<const Light> lights) {
   std::array<std::vector<Light>, kKinds.size()> kinds;
   for (const Light& light : lights)
@@ -29,7 +29,7 @@ std::array<std::vector<Light>, kKinds.size()> kinds_of(std::span<const Light> li
   return kinds;
 }
 
-/// A tree of lights of one kind as lights, or themselves where few of them shine.
+/// Lights of one kind as a light tree, or unchanged if few of them emit.
 std::vector<Light> tree_of(std::vector<Light> lights) {
   std::erase_if(lights, is_dark);
   if (lights.size() <= kMostTraced) return lights;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many lights as one: a tree of them, from which each sample draws one.
+// Many lights as one: a light tree, sampled one light at a time.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 namespace opaline {
 
 inline std::vector<KeyInfo> light_keys(const ManyLights&) {
-  return {};  // made of lights that scene files have
+  return {};  // consists of scene lights
 }
 
 inline void read_light(const ObjectReader&, double, ManyLights&) {}
@@ -46,7 +46,7 @@ inline LightSample sample_light(const ManyLights& light, const Vec3f& point, con
 
 inline float sampling_density(const ManyLights& light, const Vec3f& point, const Vec3f& normal,
                               const Vec3f& direction) {
-  // Density of the direction of a delta light: above all other densities.
+  // Density of a delta light's direction: above all other densities.
   if (!light.tree->has_area()) return 1e30f;
   const auto met = light.tree->first_met(point, direction, std::numeric_limits<float>::infinity());
   if (!met) return 0;
@@ -54,7 +54,7 @@ inline float sampling_density(const ManyLights& light, const Vec3f& point, const
          sampling_density(light.tree->lights()[*met], point, normal, direction);
 }
 
-// The first of the channels stands for all of them.
+// The first channel represents all.
 inline EmitterHit intersect_emitter(const ManyLights& light, const Vec3f& origin, const Vec3f& direction,
                                     float far) {
   if (light.channel.value_or(0) != 0) return {};

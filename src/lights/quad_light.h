@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A flat lamp that shines on one side.
+// Rectangular light emitting on one side.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +49,7 @@ inline LightSample sample_light(const QuadLight& light, const Vec3f& point, cons
                                 std::array<double, 2> unit_square, int samples) {
   const Vec3d to_light = light.corner + light.u * unit_square[0] + light.v * unit_square[1] - Vec3d(point);
   const double d2 = dot(to_light, to_light);
-  const Vec3d area_normal = cross(light.u, light.v);  // as long as the area
+  const Vec3d area_normal = cross(light.u, light.v);  // its length is the area
   const double facing = -dot(area_normal, to_light);
   if (!(d2 > 0) || facing <= 0) return {};
   const double d = std::sqrt(d2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions drawn from a picture of a room.
+// Importance sampling of an environment map.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,11 +15,11 @@ namespace opaline {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kOutsideLobe = .125;  // fraction of directions; the tail of a lobe meets bright lights
+constexpr double kOutsideLobe = .125;  // fraction of directions; bright lights may be in a lobe's tail
 
 }  // namespace
 
-// That a direction in the block is drawn.
+// Probability of a block.
 double EnvironmentPicture::block_share(std::size_t normal, std::size_t block) const {
   const std::size_t row = block / block_columns_;
   return share_of(&block_row_ends_[normal * block_rows_], row) *
@@ -118,7 +118,8 @@ void EnvironmentPicture::sample(std::span<const std::array<double, 2>> unit_squa
 
 EnvironmentPicture::InLobe EnvironmentPicture::blocks_in_lobe(const Vec3d& mirrored, float alpha,
                                                               const Vec3d& normal) const {
-  // Facets turn by half of what they mirror; beyond three times alpha a hundredth of them is left.
+  // Reach of a lobe, in alphas: reflection doubles the angle of a facet, and 1 % of facets are beyond three
+  // times alpha.
   constexpr float kReach = 6, kWidest = 1;  // radians
   const float half_block = float(std::hypot(kPi / double(block_rows_), 2 * kPi / double(block_columns_)) / 2);
   const float reach = kReach * alpha + half_block;
@@ -155,7 +156,7 @@ EnvironmentPicture::InLobe EnvironmentPicture::blocks_in_lobe(const Vec3d& mirro
     look_at(row, row + over_border);
     look_at(row + first_column, row + std::min(end_column, block_columns_));
   }
-  // A sun in the lobe's tail may bring more than all that is in its middle.
+  // Adds the brightest blocks: a sun in the lobe's tail may exceed everything in its middle.
   in_lobe.blocks.insert(in_lobe.blocks.end(), brightest_.begin(), brightest_.end());
   std::ranges::sort(in_lobe.blocks);
   std::erase_if(in_lobe.blocks, [&, last = -1](std::uint16_t b) mutable {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A ball that glows.
+// Sphere light.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,7 @@ inline SphereLight recentred(SphereLight light, const Vec3d& origin, double unit
   return light;
 }
 
-// Uniform over the cone that the sphere fills; from inside it, over all directions.
+// Uniform over the cone subtended by the sphere; from inside, over all directions.
 inline LightSample sample_light(const SphereLight& light, const Vec3f& point, const Vec3f&,
                                 std::array<double, 2> unit_square, int samples) {
   const Vec3d to_center = light.center - Vec3d(point);

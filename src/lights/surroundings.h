@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The same radiance from all around. A key of the scene, not an entry of `lights`.
+// Constant environment. A key of the scene, not an entry of `lights`.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ inline Surroundings recentred(Surroundings light, const Vec3d&, double) {
   return light;
 }
 
-// Proportional to the cosine, so that the cosine times this weight is constant.
+// Cosine-distributed, so the cosine times the weight is constant.
 inline LightSample sample_light(const Surroundings&, const Vec3f&, const Vec3f& normal,
                                 std::array<double, 2> unit_square, int samples) {
   const double radius2 = unit_square[0], cosine = std::sqrt(1 - radius2),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that a method may use to prepare one body.
+// Inputs and services for the preparation of one body.
 #pragma once
 
 #include <memory>

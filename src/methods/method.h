@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interface of a method: one way to compute the light leaving translucent bodies.
+// Interface of a method: one way to compute the exitance of translucent bodies.
 #pragma once
 
 #include <cmath>
@@ -21,7 +21,8 @@ namespace opaline {
 /// CPU time of a shadow ray, s, by bench_plan.
 inline constexpr double kSecondsOfShadowRay = 1e-7;
 
-/// A method keeps what it computes for a body in Body::states, which no other code reads. Each has a folder in methods/.
+/// Method of subsurface transport, one folder in methods/. Its results for a body are in Body::states, read
+/// by no other code.
 class SubsurfaceMethod {
  public:
   virtual ~SubsurfaceMethod() = default;
@@ -35,7 +36,7 @@ class SubsurfaceMethod {
   virtual bool uses_radial_profile() const { return true; }
   /// False if light leaves where it enters.
   virtual bool spreads_light() const { return true; }
-  /// True if the exitance may be evaluated at points of the surface in place of hits (surface_caches.h).
+  /// True if the exitance may be evaluated at points of the surface instead of hits (surface_caches.h).
   virtual bool may_use_surface_cache() const { return false; }
   /// Layers of an image beside those of every method.
   virtual MethodLayers layers() const { return {.variance = false, .error = true}; }
@@ -43,7 +44,7 @@ class SubsurfaceMethod {
   virtual std::optional<double> expected_error(const BodyModel& model) const { return model.expected_error; }
   /// False if surfaces cannot light each other.
   virtual bool supports_bounces() const { return true; }
-  /// False if the noise of one light's image differs from its contribution to that of all lights.
+  /// True if the image of a light alone equals its contribution to the image of all lights, noise included.
   virtual bool separates_lights() const { return true; }
 
   // Plan.
@@ -54,7 +55,8 @@ class SubsurfaceMethod {
   /// CPU time to prepare a body, and to shade a pixel besides its camera rays, s.
   virtual double seconds(const Scene&, const GroupPlan&, const Lighting&) const { return 0; }
   virtual double seconds_of_pixel(const Scene&, const Lighting&) const { return 0; }
-  /// Samples that trace shadow rays; infinite: so many rays that a careful build of their structure always pays.
+  /// Samples tracing shadow rays; infinite: enough rays that a careful build of their structure always pays
+  /// off.
   virtual double samples_with_shadow_rays(const Plan&) const { return INFINITY; }
   /// Lines of the plan: how light reaches the bodies; one body; all bodies; bounces; shading.
   virtual std::string light_stage(const Scene& scene, std::span<const Light> lights) const;
@@ -67,18 +69,18 @@ class SubsurfaceMethod {
 
   /// Name of the stage `prepare` in the table of costs.
   virtual const char* stage() const { return ""; }
-  /// Brings the state up to date with the lights. If light bounces it may keep the state of a previous call with bounced
-  /// light in the same direct light.
+  /// Updates the state for the lights. If light bounces, it may keep the state of a previous call with
+  /// bounced light in the same direct light.
   /// error Error{interrupted}
   virtual void prepare(BodyStages&) const {}
   /// Key of the radiant exitance under the lights alone.
   virtual StageKey direct_key(const Body&) const { return {}; }
-  /// Key of the bounced light that the state contains; zero: none.
+  /// Key of the bounced light in the state; zero: none.
   virtual StageKey bounced_key(const Body&) const { return {}; }
   /// Removes bounced light from the state.
   virtual void remove_bounced(BodyStages&) const {}
   /// Adds light from other surfaces.
-  /// in    bounced: transmitted irradiance, one a sample; key: of that
+  /// in    bounced: transmitted irradiance, one per sample; key: its key
   virtual void add_bounced(BodyStages&, std::span<const RgbF> /*bounced*/, const StageKey& /*key*/) const {}
   /// A state under the lights alone, for light gathered from this body.
   virtual std::unique_ptr<MethodState> direct_state(const BodyStages&) const { return nullptr; }
@@ -87,7 +89,7 @@ class SubsurfaceMethod {
 
   /// Transmitted irradiance at the samples from lights and other surfaces; empty: not computed.
   virtual std::span<const RgbF> irradiance(const Body&) const { return {}; }
-  /// Defects of the meshes that the method found; one line each.
+  /// Defects of the meshes, one line each.
   virtual std::vector<std::string> warnings(const Body&, double /*unit*/) const { return {}; }
   /// Radiant exitance at points of the body's surface.
   /// in    body: prepared; points: in the world's space and unit

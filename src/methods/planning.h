@@ -10,11 +10,11 @@
 
 namespace opaline {
 
-/// Light sources as costs depend on them.
+/// Properties of the lights determining costs.
 struct Lighting {
   double lights = 0;
   double rays = 0;        ///< shadow rays from a point
-  double directions = 0;  ///< from which light enters at a sample of volume_diffusion
+  double directions = 0;  ///< directions of incident light at a sample of volume_diffusion
 };
 Lighting lighting_of(const Scene& scene);
 
@@ -29,12 +29,12 @@ struct BodyPlanning {
 struct BodyMemory {
   std::size_t kept = 0;
   double temporary = 0;  ///< while the body is prepared
-  /// Samples whose exitance is evaluated at the hits, which takes memory by the image.
+  /// Samples evaluated at the hits, with memory proportional to the image.
   std::size_t evaluated_samples = 0;
 };
 
-/// Fraction of the area in triangles far longer than high. Samples there stand in lines, each in a block of the sampling's
-/// grid of its own.
+/// Fraction of the area in triangles far longer than high. Samples there stand in lines, each in its own
+/// block of the sampling grid.
 double needle_fraction(const World& world, const GroupPlan& body);
 
 /// "irradiance: 2 lights, ..."

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stage results that are reused, read from the disk cache, or computed.
+// Stage results: reused, read from the disk cache, or computed.
 #pragma once
 
 #include <string>
@@ -20,14 +20,15 @@ struct StageResult {
 
 enum class ResultSource { reused, cache, computed };
 
-/// Provides stage results by key. A result has its key only once it is complete: an interrupted computation leaves none.
+/// Provides stage results by key. A result has its key only once it is complete: an interrupted computation
+/// leaves none.
 class StageStore {
  public:
   /// cache: null: no disk cache
   StageStore(StageCache* cache, SessionWork& work, std::vector<std::string>& decisions)
       : cache_(cache), work_(work), decisions_(decisions) {}
 
-  /// Brings a result up to date: reuses it, reads it from the cache, or computes and caches it.
+  /// Updates a result: reuses it, reads it from the cache, or computes and caches it.
   template <class Codec, class Compute>
   ResultSource get(StageResult<typename Codec::Value>& result, const StageKey& key, const Codec& codec,
                    const Compute& compute) {

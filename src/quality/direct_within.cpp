@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kTrialPixels = 96 * 96;
 
-/// CPU of a pass, and of the layers without noise, s.
+/// CPU of a pass, and of the noise-free layers, s.
 struct PassCost {
   double pass = 0, layers = 0;
 };
@@ -40,14 +40,14 @@ DirectResult direct_within(const DirectInput& input, double seconds, const Finis
   };
   DirectResult result = go_on(1);
   const double finishing = finishing_cost(thinned(result.picture.image, kTrialPixels), scene.film, finish);
-  // Half of what there seems to be time for, then the rest: a single pass tells its cost badly.
+  // First half of the estimated time, then the rest: a single pass is a poor estimate of the cost.
   for (const double share : {0.5, 1.0}) {
     const double left = kPlannedShare * seconds - spent() - finishing - cost.layers;
     const auto passes = std::size_t(std::max(0.0, share * left / cost.pass));
     if (passes == 0 || state.passes * per_pass >= most) break;
     const std::size_t before = state.passes;
     result = go_on(passes);
-    if (state.passes < before + passes) break;  // good enough
+    if (state.passes < before + passes) break;  // error threshold reached
   }
   return result;
 }

@@ -13,12 +13,12 @@ namespace {
 
 constexpr double kPoints = 200, kCountingPixels = 48 * 48, kMostPixels = 256 * 256;
 constexpr std::size_t kFirstSamples = 512;
-// Bias from noise alone: the mean of sqrt(max(0, x^2 - 1)) of a normal x.
+// Bias from noise alone: the mean of sqrt(max(0, x^2 - 1)) for a standard normal x.
 constexpr double kLeft = 0.34;
 // Noise of the reference, over the expected error.
 constexpr double kNoise = 0.7;
 
-/// As many pixels as it takes to see the points wanted.
+/// Number of pixels for the wanted number of visible points.
 Scene sparse_scene(const Session& session, Monitor* monitor) {
   const Image counted = probe_picture(session, probe_scene(session.scene(), kCountingPixels), 0, monitor,
                                       session.bounced_places())
@@ -28,8 +28,8 @@ Scene sparse_scene(const Session& session, Monitor* monitor) {
   return probe_scene(session.scene(), share > 0 ? std::min(kMostPixels, kPoints / share) : 1);
 }
 
-/// One channel: noise that is independent of the error adds its square at each point. Relative to the
-/// picture, which has no noise to speak of: dividing by the reference would raise what it has too little of.
+/// Error of one channel, with the reference's independent noise subtracted at each point. Relative to the
+/// image, which has little noise; dividing by the reference would overweight its low values.
 MeasuredError measured(const std::vector<double>& errors, const std::vector<float>& picture,
                        const DirectState& reference, std::size_t channel, double floor) {
   std::vector<double> without;
@@ -50,7 +50,7 @@ MeasuredError measured(const std::vector<double>& errors, const std::vector<floa
           std::sqrt(noise / n), statistics.values, 0};
 }
 
-/// The channel that is worst for sure: one with more noise may only look worse.
+/// The channel of the largest error beyond noise.
 MeasuredError worst_channel(const Image& picture, const Image& reference, const DirectState& state) {
   const Layer diffuse = extract_layer(picture, "diffuse");
   const RelativeErrors errors =

@@ -15,21 +15,20 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kFewestTiles = 8, kFirstTiles = 24;
-// As many tiles as take so long, but no more than this part of the picture.
+// Tiles up to this time, but no more than this fraction of the image.
 constexpr double kTrySeconds = 0.02, kLeastLeft = 16;
-constexpr double kOpaque = 0.3;  // shading of a translucent point, in a guess that orders tiles
+constexpr double kOpaque = 0.3;  // shading cost of an opaque point over a translucent one, for sorting tiles
 
 double pixels_of(const Rectangle& r) {
   return double(r.x1 - r.x0) * double(r.y1 - r.y0);
 }
 
-/// Threads that have nothing more to do spin for a while, and the kernel has all of their time when they
-/// sleep.
+/// Waits for idle threads to stop spinning, so the kernel's accounting is complete.
 void rest() {
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
 }
 
-/// How much is to be shaded in parts of a picture, by a small picture of it.
+/// Work in parts of an image, from a small version of it.
 class Coverage {
  public:
   Coverage(const Film& film, const Image& probe)

@@ -9,30 +9,30 @@
 
 namespace opaline {
 
-/// CPU of shading the whole picture, by a few of its own tiles: points of a small picture lie wider apart,
-/// and what is evaluated together costs more there.
+/// CPU of shading the whole image, from a few of its own tiles: points of a smaller image would be sparser
+/// and cost more when evaluated together.
 class ShadingCost {
  public:
-  /// probe: of this scene; where it shows what tells which tiles stand for the others
+  /// probe: of this scene; its covered pixels select the representative tiles
   ShadingCost(const Scene& scene, const Image& probe);
 
-  /// s, of the search's scene with what its session has prepared; light between things is there.
+  /// CPU for the search's scene with the session's prepared stages, s, without gathering bounced light.
   double of(const SettingsSearch& search);
 
  private:
   struct Tile {
-    double coverage = 0;  // by what is to be shaded
+    double coverage = 0;  // by shaded points
     Rectangle pixels{};
   };
   std::vector<Tile> tiles_;  // tiles of the image, by coverage
   std::size_t tried_;        // number of tried tiles, spread evenly
 };
 
-/// CPU of what follows a picture, by a small one, s. The first call of `finish` may cost more than later
+/// CPU of `finish` on the full image, predicted from a small one, s. The first call may cost more than later
 /// ones.
 double finishing_cost(const Image& probe, const Film& film, const FinishPicture& finish);
 
-/// Every few pixels of a picture, so about so many are left.
+/// Subsamples the pixels of an image to about this number.
 Image thinned(const Image& picture, double pixels);
 
 /// Planned fraction of the available time; the rest covers underestimates.

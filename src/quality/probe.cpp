@@ -11,7 +11,7 @@
 namespace opaline {
 namespace {
 
-/// Sums over pixels of what a is off b by, and b off c.
+/// Sums over pixels of the differences of a from b, and of b from c.
 struct Differences {
   double first = 0, second = 0, first_square = 0, product = 0, count = 0;
 
@@ -35,8 +35,8 @@ void blacken_opaque(RenderResult& result) {
 
 double error_of(const Differences& d) {
   const double t = std::exp2(error_slope(d.second, d.first)), step = (t - 1) * (t - 1);
-  // Pattern s and noise n of a, squared: first_square = s (t - 1)^2 + n (1 + t^2), product = s t (t - 1)^2 -
-  // n t^2.
+  // With pattern s and noise n of a, squared: first_square = s (t - 1)^2 + n (1 + t^2), product = s t (t -
+  // 1)^2 - n t^2.
   const double pattern =
       std::max(0.0, (t * t * d.first_square + (1 + t * t) * d.product) / (step * t * (1 + t + t * t)));
   const double noise = std::max(0.0, (d.first_square - pattern * step) / (1 + t * t));
@@ -50,7 +50,7 @@ Scene probe_scene(const Scene& scene, double most_pixels) {
   Film& film = probe.film;
   film.samples_per_pixel = 1;
   film.filter = PixelFilter::box;
-  // Opaque surfaces, whose light is not looked at, are dark, unless they light others.
+  // Opaque surfaces are ignored, hence black, unless they illuminate others.
   if (bounces_of(scene) == 0)
     for (Shape& shape : probe.shapes) shape.reflectance = {};
   const std::array<int, 4> part =

@@ -12,7 +12,7 @@ namespace opaline {
 namespace {
 
 constexpr double kMostProbePixels = 256 * 256;
-// p99 of the evaluator's error is its tolerance, and the mean about a tenth of that.
+// The tolerance is the p99 of the evaluator's error, and its mean is about a tenth of that.
 constexpr double kTolerancePerError = 0.5, kLeastTolerance = 5e-4, kMostTolerance = 0.02;
 
 }  // namespace
@@ -27,7 +27,7 @@ void SettingsSearch::begin(double tolerance) {
     area += group.area;
     largest = std::max(largest, group.area);
   }
-  // Rounded up, the largest group has as many as it may.
+  // Rounded up, the largest body reaches the maximum.
   if (largest > 0) most_samples = (double(settings.max_samples) - 1e-6) * area / largest;
 }
 

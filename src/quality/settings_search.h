@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Settings tried one after the other, each by a small picture of the scene itself.
+// Search over settings with small images of the scene.
 #pragma once
 
 #include <cstdint>
@@ -11,45 +11,46 @@ namespace opaline {
 
 struct SettingsSearch {
   Session& session;
-  Scene scene;  ///< with the settings that are tried
+  Scene scene;  ///< with the settings tried
   Monitor* monitor = nullptr;
-  double area = 0, most_samples = 0;  ///< area and most samples of all groups; mm^2
-  double probe_pixels = 96 * 96;      ///< errors may be in a few pixels alone, beside the edge of a shadow
-  std::size_t enough_points = 3000;   ///< enough points of a probe, lit and translucent
+  double area = 0, most_samples = 0;  ///< sums over all bodies; mm^2
+  double probe_pixels = 96 * 96;      ///< errors may be in a few pixels only, beside shadow edges
+  std::size_t enough_points = 3000;   ///< enough lit translucent points of a probe
   std::uint64_t pictures = 0;
-  double estimated = 0;  ///< mean relative error of the last picture, by its own `error` layer
-  /// Light between things, where there is any: gathered for the first picture, and for all others too.
+  double estimated = 0;  ///< mean relative error of the last image, by its own `error` layer
+  /// Indirect light, if any: gathered for the first image and reused.
   std::shared_ptr<const BouncedPlaces> bounced = {};
-  double bounced_seconds = 0;  ///< CPU of that
+  double bounced_seconds = 0;  ///< CPU of gathering it
 
-  /// Settings that the search itself needs: the evaluator is not left open; edits the session, and learns the
-  /// area and the most samples of all groups.
+  /// Sets the search's own settings, with a definite evaluator; edits the session, and determines area and
+  /// most samples of all bodies.
   void begin(double tolerance);
 
-  /// Takes the scene as it is now, and prepares it.
+  /// Edits the session to the current scene, and prepares it.
   void prepare();
 
-  /// The same with so many samples of all groups together.
+  /// The same with this number of samples of all bodies together.
   void place(double samples);
 
-  /// A probe of the scene as it is now; no two share a random number of a shadow ray.
+  /// A probe of the current scene; no two share a random number of a shadow ray.
   Image picture();
   Image picture_of(double samples);
 
-  /// A probe of what is prepared, with as many pixels from now on as it takes to see enough.
+  /// A probe of the prepared scene; increases the resolution of all later ones until enough points are
+  /// visible.
   Image first_picture();
 
-  /// Samples that the session's plan has, of all groups.
+  /// Samples in the session's plan, of all bodies.
   std::size_t planned_samples() const;
 
-  /// Prepares what the scene's evaluator `automatic` would use; whether that is a surface cache.
+  /// Prepares the choice of the evaluator `automatic`; true if it is a surface cache.
   bool try_surface_cache();
 };
 
-/// Tolerance of the evaluator, for an error of the whole picture.
+/// Tolerance of the evaluator, for an error of the whole image.
 double tolerance_for(double error);
 
-/// Pixels of a probe that show lit translucent surface.
+/// Number of pixels of a probe with a lit translucent surface.
 std::size_t translucent_points(const Image& picture);
 
 }  // namespace opaline

@@ -12,14 +12,15 @@
 namespace opaline {
 namespace {
 
-// Estimates are rarely less than this factor too low: a picture's own; one that a second picture agrees with.
+// Factors on estimates, exceeding nearly all underestimates: on an image's own estimate; on one confirmed by
+// a second image.
 constexpr double kSafety = 1.6, kSecondSafety = 1.35;
-// Usual error of this number of samples on any shape, and the power by which it falls with their number.
+// Typical error at this number of samples on any shape, and its order in that number.
 constexpr double kUsualSamples = 17000, kUsualError = 0.006, kSlope = 0.8;
-// Where they are too few they grow by this factor at least, and so much beyond what the slope says: one step
-// is cheaper than two.
+// Growth of samples: least factor, factor on the prediction by the order (one step is cheaper than two), and
+// largest factor.
 constexpr double kLeastGrowth = 2.5, kBeyond = 1.25, kMostGrowth = 4;
-// Shadow rays grow where their noise alone is more than this fraction of the target.
+// Largest noise of shadow rays over the target; more rays above it.
 constexpr double kMostNoise = 0.5;
 constexpr int kMostLightSamples = 65536;
 constexpr int kMostSteps = 12;
@@ -33,14 +34,14 @@ double first_guess(const SettingsSearch& search, double fewest, double target) {
   return std::clamp(guess, fewest, search.most_samples);
 }
 
-/// Noise of the shadow rays of a small picture, as another one differs.
+/// Noise of the shadow rays of a small image, from the difference of another one.
 double noise_of(SettingsSearch& search, const Image& picture) {
   if (std::ranges::all_of(recentred_lights(search.scene, search.session.world()), is_delta)) return 0;
   return probe_difference(search.picture(), picture) / std::sqrt(2);
 }
 
-/// Adds shadow rays where their noise is too much; whether it was. The error of low-discrepancy points falls
-/// faster than the root of their number.
+/// Adds shadow rays if their noise is too large; true if so. The error of low-discrepancy points falls faster
+/// than the root of their number.
 bool add_light_samples(SettingsSearch& search, double noise, double samples, double target) {
   int& rays = search.scene.settings.light_samples;
   const double excess = kSafety * noise / (kMostNoise * target),
@@ -50,7 +51,7 @@ bool add_light_samples(SettingsSearch& search, double noise, double samples, dou
   return true;
 }
 
-/// Adds samples and shadow rays until the picture's estimate is within the target. Returns the samples.
+/// Adds samples and shadow rays until the image's estimate is within the target. Returns the samples.
 double approach(SettingsSearch& search, Image picture, double samples, double target) {
   double safety = kSafety;
   for (int step = 0; step < kMostSteps && safety * search.estimated > target; ++step) {
@@ -66,7 +67,7 @@ double approach(SettingsSearch& search, Image picture, double samples, double ta
       samples = std::min(most_samples, samples * std::clamp(kBeyond * std::pow(excess, 1 / kSlope),
                                                             kLeastGrowth, kMostGrowth));
     const Image last = std::exchange(picture, search.picture_of(samples));
-    // A second opinion: the last picture was about as much off as the two differ.
+    // Second estimate: the last image's error is about the difference of the two.
     if (samples == before) continue;
     safety = kSecondSafety;
     search.estimated =
@@ -75,7 +76,7 @@ double approach(SettingsSearch& search, Image picture, double samples, double ta
   return samples;
 }
 
-/// Keeps a surface cache if the picture is then within the target, too.
+/// Keeps a surface cache if the image is then within the target, too.
 void choose_evaluator(SettingsSearch& search, double target) {
   const double exact = search.estimated;
   if (!search.try_surface_cache()) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cells, samples and shadow rays of volume_diffusion that keep an error against random walks.
+// Cells, samples and shadow rays of volume_diffusion for a target error against random walks.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,20 +13,21 @@
 namespace opaline {
 namespace {
 
-// No body of the table of bench_volume_models is farther off than the expected error by more than this factor.
+// Largest ratio of actual to expected model error, over the bodies of bench_volume_models.
 constexpr double kModelSafety = 1.4;
-constexpr double kThinnest = 3;  // mean free paths: the table has no thinner body
-// Minimum fraction for cells, samples and shadow rays if the model error uses all of the target: 4 % of the promise.
+constexpr double kThinnest = 3;  // mean free paths; bench_volume_models has no thinner body
+// Least fraction for cells, samples and shadow rays if the model error uses all of the target: 4 % of the
+// promise.
 constexpr double kLeastShare = .3;
 constexpr double kCoarsest = 3, kFinest = .25;  // cells, mean free paths
-constexpr double kMargin = .85;                 // margin of the error aimed at: two steps cost more than one
+constexpr double kMargin = .85;                 // margin of the target error: two steps cost more than one
 constexpr int kMostSteps = 6, kMostLightSamples = 4096;
 constexpr double kProbePixels = 64 * 64;
 constexpr std::size_t kEnoughPoints = 1500;
 constexpr double kQuickCells = 3e5;  // solved in about a second
 
-/// Model error of the worst body; none where a mesh is open, or so thin that light crosses it almost without scattering, or so large
-/// that it has no cells.
+/// Model error of the worst body; none if a mesh is open, crossed by light almost without scattering, or too
+/// large for cells.
 std::optional<double> model_error(const Plan& plan) {
   double worst = 0;
   for (const GroupPlan& group : plan.groups) {
@@ -38,7 +39,7 @@ std::optional<double> model_error(const Plan& plan) {
   return worst;
 }
 
-/// The edge of the smallest cells of all bodies, mm.
+/// Edge of the smallest cells of all bodies, mm.
 double smallest_cell(const Plan& plan) {
   double smallest = INFINITY;
   for (const GroupPlan& group : plan.groups)
@@ -69,7 +70,7 @@ class VolumeSearch {
   double estimated() const { return estimated_; }
   Scene take() { return std::move(search_.scene); }
 
-  /// Cells of this size. Whether the plan allows for them; else all is as before.
+  /// Sets this cell size. Returns false, without changes, if the plan does not allow it.
   bool try_cells(double mean_free_paths) {
     Settings& settings = search_.scene.settings;
     const double before = std::exchange(settings.cell_size, mean_free_paths);
@@ -89,8 +90,8 @@ class VolumeSearch {
 
   bool sees_translucent() const { return translucent_points(picture_) > 0; }
 
-  /// Four times the shadow rays, as long as they change the picture by more than this. Where cells are many, as told by
-  /// larger ones: those make the light's noise no smaller.
+  /// Quadruples the shadow rays while that changes the image significantly. For many cells, tested with
+  /// larger ones, which have the same noise.
   void settle_light(double most) {
     Settings& settings = search_.scene.settings;
     if (std::ranges::all_of(search_.scene.lights, is_delta)) return;

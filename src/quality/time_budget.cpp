@@ -18,24 +18,24 @@ namespace opaline {
 namespace {
 
 constexpr double kFewest = 2500;             // samples
-constexpr std::size_t kEnoughPoints = 1000;  // enough points of a small picture
+constexpr std::size_t kEnoughPoints = 1000;  // enough points of a small image
 constexpr double kFirstTolerance = .01;
 // Maximum factor of the samples of a small image; these cost a few per cent then.
 constexpr double kBeyond = 8;
-// Samples that are there cost less than a few more.
+// Least factor of new samples over existing ones, as existing samples cost less.
 constexpr double kWorthPlacing = 1.25;
-// Shading that is less of the time is not worth a try of the surface cache.
+// Least fraction of the time in shading for trying the surface cache.
 constexpr double kWorthCaching = 0.3;
 constexpr double kUsualSlope = 0.8;
 
-/// Samples that were placed, and the small picture of them. CPU, s.
+/// Tried number of samples, with its small image. CPU, s.
 struct Tried {
   double samples = 0;
   Image picture;
   double sampling = 0;
   double preparing = 0;  ///< sampling, irradiance, octree, bounces
   double shading = 0;    ///< cost of shading the whole image
-  double looking = 0;    ///< other cost of trying it
+  double looking = 0;    ///< other costs of the trial
 };
 
 struct Choice {
@@ -101,7 +101,7 @@ void BudgetSearch::try_first(const FinishPicture& finish) {
   const Stopwatch looking;
   first.shading = shading_->of(search_);
   first.looking = looking.cost({}).cpu_seconds;
-  // As it will be, opaque surfaces and all.
+  // The final scene, including opaque surfaces.
   Scene whole = probe_scene(search_.scene, search_.probe_pixels);
   whole.shapes = search_.scene.shapes;
   const Session& session = search_.session;
@@ -128,7 +128,7 @@ void BudgetSearch::try_samples(double samples) {
   error_ = probe_error(a, b, c);
 }
 
-/// Mean relative error of the last tried, roughly.
+/// Approximate mean relative error of the last trial.
 double BudgetSearch::error_guess() const {
   if (error_) return *error_;
   if (tried_.size() < 2) return 2 * kFirstTolerance;
@@ -137,7 +137,7 @@ double BudgetSearch::error_guess() const {
          (std::pow(last().samples / before.samples, slope_) - 1);
 }
 
-/// Power of the samples with which shading grows.
+/// Order of the shading cost in the number of samples.
 double BudgetSearch::growth() const {
   constexpr double kMost = 0.7;
   if (tried_.size() < 2) return 0;
@@ -146,7 +146,7 @@ double BudgetSearch::growth() const {
                     0.0, kMost);
 }
 
-/// Along a straight line: sampling has a part that does not grow.
+/// Linear with a fixed part of sampling.
 double BudgetSearch::preparing(double samples) const {
   constexpr double kFixed = 0.7;  // fixed part of the cost of sampling
   const Tried &first = tried_.front(), &now = last();
@@ -157,7 +157,7 @@ double BudgetSearch::preparing(double samples) const {
   return now.preparing + std::clamp(each, least, most) * (samples - now.samples);
 }
 
-/// As many samples as there is time for; those of the last tried cost nothing more.
+/// Samples fitting into the time; those of the last trial are free.
 Choice BudgetSearch::affordable(double most, double exitance) const {
   const double power = growth();
   const auto cost = [&](double samples) {
@@ -174,14 +174,14 @@ Choice BudgetSearch::affordable(double most, double exitance) const {
   return {low, cost(low)};
 }
 
-/// Samples for the last small picture.
+/// Samples for the last small image.
 double BudgetSearch::goal() const {
   return std::min(affordable(search_.most_samples).samples / kBeyond, search_.most_samples);
 }
 
-/// True if a picture is still within the time afterwards, or cheaper than now.
+/// True if the trial and its image fit into the time, or are cheaper than the current image.
 bool BudgetSearch::is_worth_trying(double samples) const {
-  double shading = 0.75 * last().shading;  // near light is dear where samples are few
+  double shading = 0.75 * last().shading;  // near light is expensive with few samples
   if (tried_.size() > 1) {
     const double ratio = last().shading / tried_[tried_.size() - 2].shading;
     shading = last().shading * std::clamp(ratio, 0.6, 1.5);
@@ -190,8 +190,8 @@ bool BudgetSearch::is_worth_trying(double samples) const {
   return trying + shading <= left() || trying + shading < last().shading;
 }
 
-/// Three pictures each with twice the samples of the one before tell the error: the last of them about as
-/// many as the goal.
+/// Estimates the error from three images, each with twice the samples of the one before, the last near the
+/// goal.
 void BudgetSearch::try_more() {
   for (;;) {
     const double goal = this->goal(), now = last().samples;
@@ -207,17 +207,16 @@ std::optional<double> BudgetSearch::predicted(double samples) const {
   return std::hypot(*error_ * std::pow(last().samples / samples, slope_), interpolation_);
 }
 
-/// The tolerance that fits, with what it costs.
+/// The matching tolerance, with its cost.
 Choice BudgetSearch::with_tolerance() {
   const Choice rough = affordable(kBeyond * last().samples);
   const double tolerance = tolerance_for(error_guess() * std::pow(last().samples / rough.samples, slope_));
-  search_.scene.settings.tolerance =
-      std::stod(fmt::format("{:.2g}", tolerance));  // no longer than it needs be
+  search_.scene.settings.tolerance = std::stod(fmt::format("{:.2g}", tolerance));  // few digits
   tried_.back().shading = shading_->of(search_);
   return affordable(2 * kBeyond * last().samples);
 }
 
-/// A surface cache if it leaves time for more samples than its interpolation costs.
+/// A surface cache if it frees time for samples worth more than its interpolation error.
 Choice BudgetSearch::with_evaluator(Choice plan) {
   if (last().shading < kWorthCaching * left()) return plan;
   const Image exact = search_.picture();

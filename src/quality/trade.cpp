@@ -17,10 +17,10 @@ namespace {
 constexpr std::array kFactors{1 / 16.0, 1 / 8.0, 1 / 4.0, 1 / 2.0,
                               1.0,      2.0,     4.0};  // factors of the scene's samples
 constexpr double kFewest = 300;                         // minimum samples of an image
-constexpr double kUsualSlope = .8;  // power of the number of samples with which the error falls
+constexpr double kUsualSlope = .8;                      // order of the error in the number of samples
 constexpr double kProbePixels = 128 * 128;
 
-/// Few digits, so what is set can be read.
+/// Rounds to few digits, for readable settings.
 double rounded(double value, double digits) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - digits + 1);
   return std::round(value / unit) * unit;
@@ -84,7 +84,7 @@ void set_point(Settings& settings, const TradePoint& point) {
 void try_trade(Session& session, Scene scene, const std::function<void(const TradePoint&)>& tried,
                Monitor* monitor) {
   scene.settings.method = Method::hierarchical;
-  session.match_new_session(true);  // samples of another point are not left in place: each has its whole cost
+  session.match_new_session(true);  // each point has its full cost, without samples of another one
   session.edit(scene);
   double area = 0;
   std::size_t given = 0, largest = 0;
@@ -109,7 +109,7 @@ void try_trade(Session& session, Scene scene, const std::function<void(const Tra
       point.sample_spacing = rounded(std::sqrt(area / (factor * double(given))), 4);
     point.tolerance = is_given ? settings.tolerance : rounded(tolerance_for(error > 0 ? error : .02), 2);
     trade.measure(point);
-    if (point.error <= 0) return;  // nothing translucent is seen
+    if (point.error <= 0) return;  // no translucent shape is visible
     error = point.error / std::exp2(kUsualSlope);
     tried(point);
   }

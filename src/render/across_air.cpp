@@ -14,7 +14,8 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kPlaces = 500;
-// Cosine of a chord and the normal above which it starts outside: beside it surfaces that are merely concave go around.
+// Least cosine between a chord and the normal for the chord to start outside. Slightly concave surfaces stay
+// below it.
 constexpr double kOutward = .5;
 
 struct Place {

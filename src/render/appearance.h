@@ -23,7 +23,7 @@ struct Appearance {
   float eta = 1;                       ///< eta of the boundary, where there is one
   float average_reflectance = 0;       ///< F_bar
   std::optional<RoughBoundary> rough;  ///< none: smooth
-  bool has_boundary = false;           ///< translucent things and glossy opaque ones
+  bool has_boundary = false;           ///< translucent and glossy opaque surfaces
   float metalness = 0;                 ///< metalness of an opaque one
   /// Range of a textured or anisotropic roughness.
   std::shared_ptr<const RoughnessRange> roughnesses = {};
@@ -31,7 +31,7 @@ struct Appearance {
   /// Angular distribution of light traced inside; none: given by the boundary.
   std::shared_ptr<const AngularExit> exit = {};
 
-  /// The same at a point whose textures are known.
+  /// Appearance at a point with known textures.
   Appearance at(const HitTextures& textures) const {
     Appearance here = *this;
     here.albedo = albedo * textures.tint.entering * textures.tint.leaving + textures.reflected;
@@ -41,11 +41,11 @@ struct Appearance {
     return here;
   }
 
-  /// The fraction of light towards a direction that is mirrored.
+  /// Specular reflectance for a direction.
   float reflectance(float cosine) const {
     return rough ? rough->reflectance(cosine) : fresnel_reflectance(cosine, eta);
   }
-  /// Radiance towards a direction over the exitance: what is not mirrored. In a furnace both are 1 together.
+  /// Outgoing radiance over radiant exitance. Adds up to 1 with the specular reflectance in a white furnace.
   float radiance_of_exitance(float cosine) const {
     constexpr float kInversePi = std::numbers::inv_pi_v<float>;
     if (!has_boundary) return kInversePi;
@@ -53,7 +53,7 @@ struct Appearance {
     return metalness > 0 ? entered * (1 - metalness) : entered;
   }
   bool mirrors() const { return has_boundary && eta != 1; }
-  /// The fraction of even light that is mirrored towards a direction.
+  /// Specular reflectance of uniform illumination, by view direction.
   RgbF mirrored_share(float cosine) const {
     const float dielectric = reflectance(cosine);
     if (!(metalness > 0)) return RgbF(dielectric);
@@ -61,9 +61,11 @@ struct Appearance {
     return RgbF(dielectric * (1 - metalness)) +
            metal(cosine) * (RgbF(once) + albedo * (1 - once)) * metalness;
   }
-  /// Light that is mirrored over that of a dielectric without a metal.
-  /// in    cosine: with the facet's normal; reflected_once: RoughBoundary's, of the view
-  /// from  Turquin 2019, Practical multiple scattering compensation for microfacet models: what facets reflect again
+  /// Specular reflectance over that of a dielectric boundary; above the single-scattering value, as facets
+  /// reflect repeatedly.
+  /// in    cosine: between the direction and the facet's normal; reflected_once: RoughBoundary's, for the
+  ///       view
+  /// from  Turquin 2019, Practical multiple scattering compensation for microfacet models
   RgbF mirror_color(float cosine, float reflected_once = 1) const {
     if (!(metalness > 0)) return RgbF(1);
     const float dielectric = fresnel_reflectance(std::min(cosine, 1.0f), eta);
@@ -78,9 +80,9 @@ struct Appearance {
   }
 };
 
-/// By the shading normal. On coarse meshes it can be at right angles to the view, or turned away from it,
-/// where the triangle is seen well: a boundary that lets nothing through. So at least half of the triangle's
-/// cosine.
+/// Cosine of the view direction with the shading normal, at least half of its cosine with the geometric
+/// normal. On coarse meshes a shading normal may face away from a camera facing the triangle, and the
+/// boundary would then transmit nothing.
 inline float cos_view(const SurfacePoint& point, const Vec3f& direction) {
   const float side = dot(point.geometric, direction), shading = dot(point.normal, direction);
   const float towards = side > 0 ? shading : -shading;

@@ -14,7 +14,7 @@ namespace opaline {
 std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
                                    std::vector<std::string>& warnings);
 
-/// The model of a body whose medium has its profile (choose_models).
+/// Model of a body by the profile of its medium (choose_models).
 BodyModel planned_model(const Scene& scene, const GroupPlan& group);
 
 }  // namespace opaline

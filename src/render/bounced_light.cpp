@@ -12,23 +12,25 @@ namespace opaline {
 namespace {
 
 constexpr std::uint64_t kSeed = 4000;
-// Rays from a sample, whose neighbours' are added to its own by the medium; from a hit that nothing stands for; from a
-// place standing for the pixels around it: for each of them, at least and at most (which closer places take).
+// Gathered rays: from a sample (few, because the medium blurs neighbouring samples); from a hit without
+// cached irradiance; from a cache point, per pixel of its spacing, at least and at most. Closer cache points
+// use the maximum.
 constexpr int kOfSample = 16, kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
 constexpr std::size_t kPlacesAtOnce = 256;  // each of many rays, and the threads share them
-constexpr int kAcross = 64;                 // places along the picture's longer side, of the first lattice
+constexpr int kAcross = 64;                 // cache points along the image's longer side, first lattice
 constexpr int kAround = 2;                  // beyond each border
 constexpr std::size_t kLattices = 3;
-// The mean of one over the distance of what a place's rays meet, over one over the places' spacing, from which on there are
-// closer ones: a wall upright beside a floor has .21 at the distance of a spacing.
+// Mean inverse distance of a cache point's hits, times the spacing, above which closer cache points are
+// added. A wall meeting a floor gives 0.21 at a distance of one spacing.
 constexpr float kNear = 0.07f;
-// And of four places' light: over the most of them, what the most and the least differ by.
+// Required variation of four cache points: the difference of the largest and the smallest irradiance, over
+// the largest.
 constexpr float kVaried = 0.2f;
-// Distance from a place's plane, over the places' spacing, at which it stands for a hit half as well.
+// Distance from a cache point's tangent plane, over the spacing, at which its weight is a half.
 constexpr float kOffPlane = 0.2f;
-constexpr float kLeastWeight = 0.05f;  // sum over the places around a hit; a place at the hit has weight 1
+constexpr float kLeastWeight = 0.05f;  // sum of the weights around a hit, each at most 1
 
-// Lanes of a row's places, one a lane; GCC's and Clang's.
+// Vector of a row's cache points; extension of GCC and Clang.
 using Lanes = float __attribute__((vector_size(BouncedPlaces::kBeside * sizeof(float))));
 
 Lanes absolute(const Lanes& values) {
@@ -71,7 +73,7 @@ BouncedPlaces::BouncedPlaces(const RenderInput& input, const Shader& shader)
     gather(input, shader, fine, places);
     lattices_.push_back(std::move(fine));
   }
-  if (input.view != nullptr) input.view->at_places.resize(chunks_);  // less what other light had needed
+  if (input.view != nullptr) input.view->at_places.resize(chunks_);  // removes chunks of an earlier image
 }
 
 void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
@@ -86,7 +88,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
     keys.push_back(place * kLattices + lattice_index);
   }
   input.rays.intersect(rays);
-  // At depth 1.
+  // Spacing at depth 1.
   const double apart = lattice.step * pixel_width(input.scene.camera, input.scene.film);
   const int rays_each = is_first
                             ? std::clamp(kOfPixel * lattice.step * lattice.step, kFewestOfPlace, kMostOfPlace)
@@ -100,12 +102,12 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
     const std::vector<Shader::SeenSurfaces> seen = shader.surfaces_along(
         std::span(rays).subspan(begin, end - begin), std::span(keys).subspan(begin, end - begin));
     for (const auto& [field, hits, eta] : seen) {
-      std::vector<std::uint32_t> held_places;  // which of a closer lattice gather hangs on the light
+      std::vector<std::uint32_t> held_places;  // selection in a closer lattice depends on the lights
       for (const std::uint32_t ray : hits.rays) held_places.push_back(std::uint32_t(keys[begin + ray]));
       HeldView::Gathering* const held =
           view != nullptr ? &gathering_of(view->at_places[first_chunk + chunk], field, held_places) : nullptr;
       std::vector<RgbF> irradiance(hits.points.size());
-      std::vector<float> nearness(hits.points.size());  // mean of one over the distance of what the rays meet
+      std::vector<float> nearness(hits.points.size());  // mean inverse distance of the hits
       for_each_gathered({input.rays, shader, hits.points, hits.keys, eta, rays_each,
                          hash_bits(input.scene.settings.seed, kSeed), held, view},
                         [&](const SurfaceLight& light) {
@@ -124,7 +126,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
   for (std::size_t k = 0; k < places.size(); ++k) lattice.is_near[places[k]] = is_near[k] != 0;
 }
 
-// Those that may stand for hits between places of which one is near.
+// Cache points of the finer lattice around hits near a close pair of surfaces.
 std::vector<std::uint32_t> BouncedPlaces::places_beside_near(const Lattice& coarse,
                                                              const Lattice& fine) const {
   std::vector<std::uint32_t> places;
@@ -165,7 +167,7 @@ bool BouncedPlaces::Lattice::needs_closer_places(const CameraRays::FilmPlace& se
     least = component_min(least, irradiance[place]);
     most = component_max(most, irradiance[place]);
   }
-  const RgbF apart = most - least;  // channel by channel: a light of another colour changes nothing
+  const RgbF apart = most - least;  // per channel: a light of another colour changes nothing
   return apart.x > kVaried * most.x || apart.y > kVaried * most.y || apart.z > kVaried * most.z;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light that surfaces send to other surfaces.
+// Indirect light between surfaces.
 #pragma once
 
 #include <array>
@@ -15,48 +15,49 @@
 
 namespace opaline {
 
-/// Gathered at what a camera sees at 64 places along its picture's longer side, and at closer ones where surfaces are near
-/// to each other and their light varies. Where bodies' trees hold what bounced to them, so does what they send here, a
-/// second bounce: a Session's do not while it gathers.
+/// Irradiance cache for indirect light, in image space: 64 points along the longer side of the image, and
+/// closer ones where near surfaces light each other and the irradiance varies. Includes a second bounce if
+/// the bodies' trees contain indirect light; they do not in a Session's cache.
 /// from  Ward, Rubinstein & Clear 1988
 class BouncedPlaces {
  public:
-  static constexpr std::size_t kBeside = 4;  ///< places of a row that may stand for a point
+  static constexpr std::size_t kBeside = 4;  ///< cache points of a row with a weight at a hit
 
   /// shader: without bounced light
   BouncedPlaces(const RenderInput& input, const Shader& shader);
 
-  /// Between places on the plane of the point; none where no place stands for it.
+  /// Interpolated indirect irradiance; none without a cache point on the point's tangent plane.
   std::optional<RgbF> at(const SurfacePoint& point, float eta) const;
 
  private:
-  /// An array for each of their numbers, to weigh some at once.
+  /// Cache points, one array per coordinate for vector instructions.
   struct Places {
     std::vector<float> x, y, z, normal_x, normal_y, normal_z;
-    std::vector<float> reach;  ///< off the plane, where they stand for a point half as well
+    std::vector<float> reach;  ///< distance from the tangent plane at which the weight is a half
     std::vector<float> eta;    ///< below 0: no surface there
 
-    /// Boundary and position of a query; dx, dy: to the first place of a row, in places.
+    /// Boundary and position of a query; dx, dy: to the first cache point of a row, in spacings.
     struct Asked {
       Vec3f point, normal;
       float eta, dx, dy;
     };
     void resize(std::size_t count);
     void set(std::size_t i, const SurfacePoint& point, float boundary, float spacing);
-    /// How well places first, first + 1, ... of a row stand for a point.
+    /// Weights of the cache points first, first + 1, ... of a row.
     std::array<float, kBeside> weights(const Asked& asked, std::size_t first) const;
   };
-  /// Places over the picture and a little around it, so a crop is a piece of it; row after row.
+  /// Cache points over the whole image and a small margin, so a crop equals the same part of the full image;
+  /// row by row.
   struct Lattice {
-    int step;  ///< pixels from one place to the next
+    int step;  ///< spacing, pixels
     int columns, rows;
     Places places;
     std::vector<RgbF> irradiance;
-    std::vector<bool> is_near;  ///< to what they gather from, for so few of them
+    std::vector<bool> is_near;  ///< true if the gathered surfaces are close, relative to the spacing
 
     Lattice(const Film& film, int pixels);
     std::array<double, 2> in_places(const CameraRays::FilmPlace& seen) const;
-    /// True if a place around this one is near, and their light varies.
+    /// True if a cache point around this position is near a surface and the irradiance varies.
     bool needs_closer_places(const CameraRays::FilmPlace& seen) const;
     std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point, float eta) const;
   };
@@ -65,18 +66,19 @@ class BouncedPlaces {
   std::vector<std::uint32_t> places_beside_near(const Lattice& coarse, const Lattice& fine) const;
 
   CameraRays camera_;
-  std::vector<Lattice> lattices_;  // each of places half as far apart as the last, where that needs them
-  std::size_t chunks_ = 0;         // chunks of places that gathered
+  std::vector<Lattice> lattices_;  // each with half the spacing of the last, where necessary
+  std::size_t chunks_ = 0;         // chunks of gathered cache points
 };
 
-/// At the hits of a picture: by RenderInput::bounced, or places of its own. Hits that no place stands for, at rims, gather
-/// for themselves, with a second bounce where trees hold the first.
+/// Indirect light at the hits of an image: from RenderInput::bounced, or from a cache of its own. Hits
+/// without a usable cache point, as at silhouettes, gather rays themselves, with a second bounce if the
+/// bodies' trees contain the first.
 class BouncedLight {
  public:
   /// shader: without bounced light; both must outlive it
   BouncedLight(const RenderInput& input, const Shader& shader);
 
-  /// One a hit, W/mm^2. held: of the same hits, added to, or null
+  /// Irradiance per hit, W/mm^2. held: cached results for the same hits, extended; or null
   std::vector<RgbF> at(const SurfaceHits& hits, float eta, HeldView::Surface* held = nullptr) const;
 
  private:

@@ -23,17 +23,18 @@ constexpr ProfileKind kOfBodies = ProfileKind::normalized_diffusion;
 constexpr ProfileKind kOfThickPlates = ProfileKind::dipole;
 // Alignment of a square plate with a thickness of a sixth of its width.
 constexpr double kFlatAlignment = .58;
-// Diffuse mean free paths, of the channel where light goes farthest: 2 % of what goes down crosses a thicker plate.
+// Plates thicker than this many diffuse mean free paths, in the channel with the longest, transmit less than
+// 2 %.
 constexpr double kCrossed = 4;
 
 /// Extremes of a medium over its scattering channels.
 struct MediumExtremes {
   double mean_free_path = 0, diffuse_mean_free_path = 0;  ///< the longest, mm
-  std::string channels;  ///< whose mean free path is the longest: "red", "red, green"
+  std::string channels;  ///< channels with the longest mean free path: "red", "red, green"
   double absorbed = 0;   ///< 1 - reduced albedo, the largest
 };
 
-/// An expected error: a base, and what thin bodies and dark media add.
+/// Expected error: a base value, plus terms for thin bodies and dark media.
 struct ErrorPlane {
   double base, thin, dark;
   double at(double mean_free_paths, const MediumExtremes& medium) const {
@@ -148,7 +149,7 @@ BodyModel planned_model(const Scene& scene, const GroupPlan& group) {
 
 void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference) {
   if (std::ranges::all_of(scene.media, [](const Medium& m) { return m.profile.has_value(); })) return;
-  std::vector<std::string> warnings;  // make_plan says them
+  std::vector<std::string> warnings;  // added by make_plan
   std::vector<bool> is_taken(scene.media.size());
   for (const GroupPlan& group : find_groups(scene, world, warnings)) {
     if (scene.media[group.medium].profile) continue;

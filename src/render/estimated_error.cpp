@@ -33,11 +33,12 @@ double mean_relative(const Pixels& lit) {
   const auto p99 = sorted.begin() + std::ptrdiff_t(double(sorted.size() - 1) * 0.99);
   std::ranges::nth_element(sorted, p99);
   const double floor = 1e-3 * *p99;
-  // Standard errors; a normal distribution's mean deviation is sqrt(2/pi) of that.
+  // Standard errors; the mean absolute deviation of a normal distribution is sqrt(2/pi) times its standard
+  // deviation.
   const double deviation = std::sqrt(2 * std::numbers::inv_pi);
   double sum = 0;
   for (std::size_t i = 0; i < lit.error.size(); ++i) {
-    // Where there is less than what is in doubt, all of it is.
+    // Limits the error to the value itself.
     const double bright = std::max(lit.diffuse[i], floor);
     sum += std::min(deviation * lit.error[i], bright) / bright;
   }

@@ -21,7 +21,7 @@ int divided_up(int a, int b) {
   return (a + b - 1) / b;
 }
 
-/// From the pixels of a picture to those of a coarse one, whose middles coincide.
+/// Maps pixels of an image to pixels of a coarse one with the same centre.
 struct CoarseGrid {
   int stride;
   std::array<int, 2> resolution, coarse;
@@ -35,7 +35,7 @@ struct CoarseGrid {
   double place(double pixel, std::size_t axis) const {
     return (pixel + .5 - resolution[axis] / 2.0) / stride + coarse[axis] / 2.0 - .5;
   }
-  /// The coarse pixels around all those of a part.
+  /// Coarse pixels around all those of a part.
   std::array<int, 4> around(const Rectangle& part) const {
     const auto low = [&](int pixel, std::size_t axis) {
       return std::clamp(int(std::floor(place(pixel, axis))), 0, coarse[axis] - 1);
@@ -56,14 +56,15 @@ Scene coarse_scene(Scene scene, const CoarseGrid& grid) {
   return scene;
 }
 
-/// Pixels between two camera rays in each direction: at least 8, and as many as limit the coarse image to 48 x 48.
+/// Pixels between two camera rays in each direction: at least 8, and as many as limit the coarse image to 48
+/// x 48.
 int stride_of(const Film& film) {
   constexpr int kStride = 8, kWidest = 48;
   const Rectangle part = rendered_part(film);
   return std::max(kStride, divided_up(std::max(part.x1 - part.x0, part.y1 - part.y0), kWidest));
 }
 
-/// Two neighbours of a row or column of pixels, and the second one's share.
+/// Two neighbours of a row or column of pixels, and the second one's weight.
 struct Between {
   std::size_t first, second;
   float share;

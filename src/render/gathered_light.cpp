@@ -13,7 +13,7 @@ namespace {
 
 using Met = HeldView::Gathered::Met;
 
-// Rays of a few points, drawn one after the other, and those that met surfaces.
+// Rays sampled at a few points, in order, and those of them with hits.
 struct Rays {
   std::vector<TracedRay> rays;
   std::vector<Met> met;
@@ -23,7 +23,7 @@ Ray leaving(const SurfacePoint& point, const Vec3f& direction) {
   return {point.position + point.geometric * point.offset, direction};
 }
 
-// Directions drawn by the cosine, those leaving the surface.
+// Cosine-distributed directions on the outside of the surface.
 void add_rays(const GatherInput& input, std::size_t p, std::uint32_t place, Rays& drawn) {
   const SurfacePoint& point = input.points[p];
   Vec3f x, y;
@@ -43,7 +43,7 @@ void add_rays(const GatherInput& input, std::size_t p, std::uint32_t place, Rays
   }
 }
 
-// Leaves the rays that met a surface.
+// Removes the rays without a hit.
 void keep_hits(Rays& drawn) {
   std::size_t kept = 0;
   for (std::size_t r = 0; r < drawn.rays.size(); ++r) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light that points gather from the surfaces around them.
+// Indirect light gathered at points.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace opaline {
 
-/// Points whose rays are traced together, and what they meet is shaded together: trees are summed for many points lying
-/// all around in half of the time that they take for few.
+/// Points traced and shaded together. Hierarchical evaluation of many points over all directions takes half
+/// the time of small sets.
 inline constexpr std::size_t kGatheredAtOnce = 1024;
 
 /// Light gathered at points, by rays over the hemisphere, from surfaces under direct light.
@@ -21,13 +21,14 @@ struct GatherInput {
   const RayScene& rays;
   const Shader& shader;
   std::span<const SurfacePoint> points;
-  std::span<const std::uint64_t> keys;  ///< one a point: chooses its random numbers
-  float eta = 0;                        ///< eta of the boundary that light enters through; 0: none
+  std::span<const std::uint64_t> keys;  ///< one per point: chooses its random numbers
+  float eta = 0;                        ///< eta of the boundary transmitting the light; 0: none
   int rays_each = 64;
   std::uint64_t seed = 0;
-  /// Cached hits of the same points, keys, number and seed, extended up to gathered_bytes of the view; or null.
+  /// Cached hits of the same points, keys, number and seed, extended up to gathered_bytes of the view; or
+  /// null.
   HeldView::Gathering* held = nullptr;
-  HeldView* view = nullptr;  ///< that has it
+  HeldView* view = nullptr;  ///< cache containing it
 };
 
 /// Light reaching a point from a surface.
@@ -42,7 +43,7 @@ using UseOfGathered = std::function<void(const SurfaceLight&)>;
 
 void for_each_gathered(const GatherInput& input, const UseOfGathered& use);
 
-/// Their sums, one a point, W/mm^2.
+/// Their sums, one per point, W/mm^2.
 std::vector<RgbF> gathered_irradiance(const GatherInput& input);
 
 }  // namespace opaline

@@ -19,7 +19,7 @@ void visit_gathered(HeldView::Batch& batch, const Visit& visit) {
   }
 }
 
-/// Calls visit(gathered) for all that is gathered.
+/// Calls visit(gathered) for all gathered hits.
 template <class Visit>
 void visit_gathered(HeldView& view, const Visit& visit) {
   for (std::vector<HeldView::Batch>& tile : view.tiles)
@@ -29,7 +29,7 @@ void visit_gathered(HeldView& view, const Visit& visit) {
       for (HeldView::Gathering& gathering : list) visit_gathering(gathering, visit);
 }
 
-/// Calls visit(batch) for what the camera sees and for what is gathered, but not for what coats mirror.
+/// Calls visit(batch) for camera hits and gathered hits, but not for hits of specular reflections.
 template <class Visit>
 void visit_batches(HeldView& view, const Visit& visit) {
   for (std::vector<HeldView::Batch>& tile : view.tiles)
@@ -49,7 +49,7 @@ void set_held_lights(std::vector<PointTransfers>& lights,
 
 void HeldView::forget_camera() {
   for (std::vector<Batch>& tile : tiles)
-    for (Batch& batch : tile) {  // memory stays for what the next camera sees
+    for (Batch& batch : tile) {  // keeps its memory for the next camera
       batch.is_traced = false;
       batch.hits.clear();
       batch.points.clear();
@@ -74,7 +74,7 @@ void HeldView::forget_coats() {
 
 void HeldView::set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta) {
   if (of_mesh == field_of_mesh && eta == eta_of_field) return;
-  forget_coats();  // which mirror the others
+  forget_coats();  // they contain light of the other surfaces
   if (of_mesh != field_of_mesh || eta.size() != eta_of_field.size()) {
     forget_surfaces();
   } else {

@@ -41,7 +41,7 @@ double squared_distance(const Vec3d& p, const Corners& corners) {
   return above ? height * height / normal2 : to_border;
 }
 
-/// The distance from a triangle is convex along a line: thirds that cannot hold the least are cut off.
+/// Ternary search: the distance from a triangle is convex along a line.
 double squared_distance(const Segment& segment, const Corners& corners) {
   const auto at = [&](double t) { return squared_distance(segment.start + segment.along * t, corners); };
   double low = 0, high = 1;
@@ -54,7 +54,7 @@ double squared_distance(const Segment& segment, const Corners& corners) {
   return at(low);
 }
 
-/// True if no point of the ball comes nearer to the segment than `distance`.
+/// True if all points of the ball are at least `distance` from the segment.
 bool is_beyond(const Segment& segment, const Vec3d& center, double radius, double distance) {
   return squared_distance(center, segment) >= (distance + radius) * (distance + radius);
 }
@@ -65,7 +65,7 @@ double nearest_of_mesh(const Segment& segment, const Mesh& mesh, double nearest)
   if (is_beyond(segment, .5 * (box.low + box.high), length(box.high - box.low) / 2, nearest)) return nearest;
   for (const auto& [a, b, c] : mesh.triangles) {
     const Corners corners{mesh.positions[a], mesh.positions[b], mesh.positions[c]};
-    // The first corner's ball is the cheapest that holds the triangle.
+    // The ball around the first corner is the cheapest bound of the triangle.
     const Vec3d ab = corners[1] - corners[0], ac = corners[2] - corners[0];
     if (is_beyond(segment, corners[0], std::sqrt(std::max(dot(ab, ab), dot(ac, ac))), nearest)) continue;
     nearest = std::min(nearest, std::sqrt(squared_distance(segment, corners)));

@@ -26,7 +26,7 @@ LocalMedia::LocalMedia(const Scene& scene, const World& world, const Medium& med
   }
 }
 
-// Between media of the table: the total is nearly straight over the root of what is absorbed.
+// Interpolates between media of the table: the total is nearly linear in the root of the absorbed fraction.
 double LocalMedia::absorbed(double color) const {
   const auto below = std::ranges::lower_bound(totals_, color, std::greater());
   if (below == totals_.begin()) return 0;
@@ -58,7 +58,7 @@ std::array<ReducedMedium, 3> LocalMedia::at(std::uint32_t mesh, std::uint32_t tr
 
 namespace {
 
-/// Calls visit(mesh, triangle, u, v) at places spread over the area of a body, in order of its triangles.
+/// Calls visit(mesh, triangle, u, v) at points spread over the area of a body, in order of its triangles.
 template <class Visit>
 void for_places(const World& world, const GroupPlan& group, std::size_t places, const Visit& visit) {
   const double area = area_of(world, group.meshes);
@@ -79,7 +79,7 @@ void for_places(const World& world, const GroupPlan& group, std::size_t places, 
   }
 }
 
-/// Over the channels that scatter and have a mean free path; infinite where none does.
+/// Smallest mean free path of the scattering channels; infinite if there is none.
 double shortest_length(const std::array<ReducedMedium, 3>& media) {
   double shortest = INFINITY;
   for (const ReducedMedium& medium : media)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A medium whose colour or radius textures vary: what it is at a place.
+// Local medium below a surface with textured colour or radius.
 #pragma once
 
 #include <array>
@@ -21,17 +21,18 @@ inline bool is_local(const DiffuseProfile& profile, std::size_t channel) {
   return profile.total[channel] > 0 && !(profile.mean_free_path[channel] > 0);
 }
 
-/// Media below the surface of bodies of one medium, from the textures above: R G B, reduced, lengths in the world's
-/// unit.
+/// Media below the surface of bodies of one medium, from the textures above: R G B, reduced, lengths in the
+/// world's unit.
 class LocalMedia {
  public:
-  /// medium: one whose coefficients are an artist's, and that varies inside. Scene and world must outlive it.
+  /// medium: with diffuse colour and radius, varying inside the body. Scene and world must outlive the
+  /// object.
   LocalMedia(const Scene& scene, const World& world, const Medium& medium);
 
-  /// The least radius over the mean one: one of 0 would make walks endless.
+  /// Least radius over the mean one: a radius of 0 would make random walks endless.
   static constexpr float kLeastRadius = 1.0f / 64;
 
-  /// in    width: of the square around the place whose mean is looked up, world units
+  /// in    width: edge of a square around the point, world units; textures are averaged over it
   std::array<ReducedMedium, 3> at(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
                                   float width) const;
 
@@ -45,12 +46,12 @@ class LocalMedia {
   std::vector<double> totals_;  // totals of media with 1 - albedo' = t^2, for uniform t from 1 to 0
 };
 
-/// Length that the cells of a textured body must resolve: the 10th percentile over its surface, mm.
+/// Length to be resolved by the cells of a textured body: the 10th percentile over its surface, mm.
 double short_length_of(const Scene& scene, const World& world, const GroupPlan& group);
 
-/// Inside a body: at each point the medium of the nearest point of its surface. Empty where the body's medium is the same
-/// throughout.
-/// in    input, body: outlive the result; convert: what to make of a reduced medium
+/// Medium at points inside a body: the medium of the nearest surface point. Empty if the body's medium is
+/// homogeneous.
+/// in    input, body: outlive the result; convert: maps a reduced medium to the result's
 MediaInside media_inside(const PrecomputeInput& input, const Body& body,
                          std::function<HomogeneousMedium(const ReducedMedium&)> convert);
 

@@ -26,12 +26,12 @@ std::uint32_t hash_of(std::string_view name) {
   return hash;
 }
 
-/// Names of one kind, and which of them each mesh has.
+/// Names of one kind, and the name of each mesh.
 struct MatteLayer {
   std::string name;
   std::vector<std::string> names;
   std::vector<std::size_t> of_mesh{};
-  std::size_t first_channel = 0;  ///< in the picture
+  std::size_t first_channel = 0;  ///< in the image
 };
 
 MatteLayer objects_of(const Scene& scene) {
@@ -73,7 +73,7 @@ void append_channels(MatteLayer& layer, std::size_t first, std::vector<std::stri
       channels.push_back(fmt::format("{}{:02}.{}", layer.name, i, channel));
 }
 
-/// How many camera rays of a pixel met each mesh.
+/// Number of camera rays of a pixel per mesh.
 struct SeenMesh {
   std::uint32_t mesh;
   int rays;
@@ -88,7 +88,7 @@ void count(SeenMeshes& seen, std::uint32_t mesh) {
     seen.push_back({mesh, 1});
 }
 
-/// Lights that hide what is behind them from the camera.
+/// Visible lights in front of the surfaces.
 std::vector<Light> hiding_lights(const RenderInput& input) {
   std::vector<Light> lights;
   for (const Light& light : recentred_lights(input.scene, input.world))
@@ -118,7 +118,7 @@ std::vector<SeenMeshes> seen_in(const Rectangle& tile, const RenderInput& input,
   return seen;
 }
 
-/// The names that cover most of the pixel, largest first.
+/// Stores the names covering most of the pixel, largest first.
 void store(const SeenMeshes& seen, const MatteLayer& layer, std::span<const float> ids, int rays,
            float* pixel) {
   SeenMeshes names;

@@ -39,7 +39,7 @@ std::size_t channel(const Image& image, const char* name) {
   return std::size_t(std::ranges::find(image.channels, name) - image.channels.begin());
 }
 
-/// The largest channel of each pixel that shows an object, of every step-th pixel.
+/// Largest channel of each covered pixel, of every step-th pixel.
 std::vector<float> brightness(const Image& image, std::size_t step) {
   const std::size_t stride = image.channels.size(), count = image.pixels.size() / stride;
   const std::size_t r = channel(image, "R"), g = channel(image, "G"), b = channel(image, "B"),
@@ -52,7 +52,7 @@ std::vector<float> brightness(const Image& image, std::size_t step) {
   return values;
 }
 
-/// Some 65,000 pixels tell the brightness; all of them are asked whether there is an object at all.
+/// Brightness is estimated from about 65,000 pixels; all pixels are searched for covered ones.
 std::vector<float> sampled_brightness(const Image& image) {
   constexpr std::size_t enough = 65536;
   const std::size_t step = (image.pixels.size() / image.channels.size() / enough) | 1;
@@ -60,7 +60,7 @@ std::vector<float> sampled_brightness(const Image& image) {
   return values.empty() && step > 1 ? brightness(image, 1) : values;
 }
 
-/// True if most of the pixels full of an object show a surface from behind: opaque ones have no behind.
+/// True if most covered pixels show the back of a surface; opaque surfaces have no back.
 bool is_inside(const Image& image, const Vec3d& camera) {
   const std::size_t stride = image.channels.size(), coverage = channel(image, "A");
   const std::array<std::size_t, 3> normal{channel(image, "N.X"), channel(image, "N.Y"),
@@ -80,7 +80,7 @@ bool is_inside(const Image& image, const Vec3d& camera) {
   return 2 * behind > seen;
 }
 
-/// Where the camera sees what lies that way, of the whole picture. towards: in front of it
+/// Pixel of a direction, in the full image. towards: in front of the camera
 std::string pixel_text(const Scene& scene, const Vec3d& towards) {
   const Camera& camera = scene.camera;
   const Vec3d forward = normalized(camera.look_at - camera.position),
@@ -153,8 +153,8 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
   return texts;
 }
 
-/// Lights at a point get weaker with the square of millimetres, whatever the scene's unit is: the usual cause
-/// of a brightness that is off by the square of the unit.
+/// Point lights fall off with the square of the distance in mm, whatever the scene's unit: the usual cause of
+/// a brightness wrong by the square of the unit.
 std::string unit_text(const Scene& scene, double brightest) {
   const double factor = scene.mm_per_unit * scene.mm_per_unit, meant = brightest * factor;
   const bool has_points = std::ranges::any_of(scene.lights, [](const Light& light) {
@@ -174,7 +174,7 @@ std::string exposure_text(const Scene& scene, double brightest) {
   return fmt::format("; use --exposure {:g}", stops);
 }
 
-/// Has black medium of which the plan has said so.
+/// True if a medium is black; the plan already warns of it.
 bool has_black_medium(const Scene& scene) {
   return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
     return shape.medium && !make_diffuse_profile(scene.media[*shape.medium]).translucent;
@@ -203,7 +203,7 @@ std::string cause_of_black(const Scene& scene, const Shape& shape) {
   return {};
 }
 
-/// The causes where every shape has one.
+/// Causes, if every shape has one.
 std::string black_surfaces(const Scene& scene) {
   std::string text;
   for (const Shape& shape : scene.shapes) {
@@ -231,7 +231,7 @@ std::string too_dark(const Scene& scene, const World& world, double brightest) {
 
 using Corners = std::array<Vec3d, 3>;
 
-/// The largest cosine between an axis and the directions from zero to points of an edge, where one is positive. axis: unit
+/// Largest positive cosine between a unit axis and the directions from the origin to points of an edge.
 double largest_cosine(const Vec3d& a, const Vec3d& b, const Vec3d& axis) {
   const Vec3d edge = b - a;
   const double along = dot(edge, axis), start = dot(a, axis), both = dot(a, edge);
@@ -244,7 +244,8 @@ double largest_cosine(const Vec3d& a, const Vec3d& b, const Vec3d& axis) {
   return largest;
 }
 
-/// True if a cone from zero and a triangle meet: an edge is in it, or its axis passes through the triangle.
+/// True if a cone with its apex at the origin and a triangle intersect: an edge is in it, or its axis passes
+/// through the triangle.
 bool meets_cone(const Corners& corners, const Vec3d& axis, double least_cosine) {
   const auto& [a, b, c] = corners;
   for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
@@ -256,7 +257,7 @@ bool meets_cone(const Corners& corners, const Vec3d& axis, double least_cosine) 
   return is_within && dot(axis, normal) * dot(a, normal) > 0;
 }
 
-/// True if the side or the cone that a light shines into has a surface in it, in shadow or not.
+/// True if the light's half space or cone contains a surface, in shadow or not.
 bool reaches_a_surface(const Light& light, const World& world) {
   constexpr double kGrazing = 1e-6;  // diagonals
   const LightExtent lamp = extent(light);
@@ -292,7 +293,7 @@ std::string way_to_turn(const Scene& scene, const World& world, const Light& lig
 }  // namespace
 
 std::vector<std::string> picture_warnings(const Scene& scene, const World& world, const Image& image) {
-  if (world.meshes.empty() || scene.lights.empty()) return {};  // the plan has said so
+  if (world.meshes.empty() || scene.lights.empty()) return {};  // the plan warns of this
   std::vector<float> values = sampled_brightness(image);
   if (values.empty()) return {nothing_in_view(scene, world)};
   if (is_inside(image, scene.camera.position))

@@ -73,7 +73,7 @@ void check_bounces(const Scene& scene) {
               "--set settings.bounces=0, or --method volume_diffusion");
 }
 
-// Measured: places of the image where bounced light is gathered, and more in corners.
+// Memory of the points gathering bounced light, and of more in corners; bench_plan.
 constexpr std::size_t kBytesOfBouncePlaces = 12'000'000;
 
 /// Text for a medium with textures that could vary inside a body; else empty.
@@ -118,8 +118,8 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
   plan.stages.push_back("shading: " + shading);
 }
 
-// Measured (world.h): a quick build saves .3 us a triangle and costs 5 ns a ray of the picture, which lie
-// together, and 75 ns a ray from a sample. Shadow edges bring about as many again.
+// A quick build saves time per triangle, and costs time per camera ray (coherent) and per shadow ray from a
+// sample (incoherent), measured on the bunny. Shadow edges need about as many rays again.
 RayBuild cheaper_build(const Scene& scene, std::span<const Light> lights, const Plan& plan) {
   constexpr double kSaved = 300, kPictureRay = 5, kSampleRay = 75;  // ns
   const double samples = method_of(scene.settings.method).samples_with_shadow_rays(plan);
@@ -133,7 +133,7 @@ RayBuild cheaper_build(const Scene& scene, std::span<const Light> lights, const 
   return lost < kSaved * double(plan.triangles) ? RayBuild::quick : RayBuild::careful;
 }
 
-// Measured: the library that reads pictures, with all that it loads.
+// Memory of the image-reader library and its dependencies; bench_plan.
 constexpr std::size_t kBytesOfPictureReader = 105'000'000;
 
 /// Each once, in the order of the lights.
@@ -146,12 +146,12 @@ std::vector<const EnvironmentPicture*> environments_of(const Scene& scene) {
   return environments;
 }
 
-/// Picture bytes of environments, and of all textures at their full sizes: a camera may look at less.
+/// Memory of environment maps, and of all textures at full size; a camera may load less.
 std::size_t picture_bytes(const Scene& scene, const std::vector<const EnvironmentPicture*>& environments) {
   std::set<const TextureFile*> files;
   for (const Shape& shape : scene.shapes)
     for (const Texture* texture : textures_of(scene, shape)) files.insert(texture->file.get());
-  // Loaded, too, where all textures turned out to be constant, or no shape uses them.
+  // Loaded as well if all textures turn out constant, or if no shape uses them.
   std::size_t decoded = 0, cached = 0, held = picture_module_is_loaded() ? kBytesOfPictureReader : 0;
   for (const EnvironmentPicture* environment : environments) held += environment->memory();
   for (const TextureFile* file : files) {
@@ -162,9 +162,9 @@ std::size_t picture_bytes(const Scene& scene, const std::vector<const Environmen
   return held + decoded + (files.empty() ? 0 : std::min(cached, TextureFile::cache_limit()));
 }
 
-/// Warns where rays start visibly off surfaces, in scenes far larger than their smallest shape.
+/// Warns of scenes far larger than their smallest shape, whose ray offsets become visible.
 void warn_of_large_scene(const Scene& scene, const World& world, std::vector<std::string>& warnings) {
-  constexpr double kVisible = 4e-3;  // fraction of the smallest shape that shows in contact shadows
+  constexpr double kVisible = 4e-3;  // fraction of the smallest shape visible in contact shadows
   if (world.boxes.empty()) return;
   const auto size = [&](std::size_t m) { return length(world.boxes[m].high - world.boxes[m].low); };
   std::size_t smallest = 0, farthest = 0;
@@ -210,7 +210,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   plan.groups = find_groups(scene, world, plan.warnings);
   for (GroupPlan& group : plan.groups) group.model = planned_model(scene, group);
   plan.warnings.insert(plan.warnings.end(), scene.warnings.begin(), scene.warnings.end());
-  std::set<std::string> said;  // by the first of several shapes from one file
+  std::set<std::string> said;  // reported by the first of several shapes from one file
   for (const MeshReport& report : world.reports)
     for (const std::string& warning : report.warnings)
       if (said.insert(warning).second) plan.warnings.push_back(warning);
@@ -225,7 +225,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (const EnvironmentPicture* environment : environments)
     if (!environment->warning().empty()) plan.warnings.push_back(environment->warning());
   for (std::string& text : lights_that_miss(scene, world)) plan.warnings.push_back(std::move(text));
-  // Measured by bench_plan: the libraries; layers of the pixels that are not empty, and on their way to the file.
+  // Fitted to bench_plan: the libraries; layers of the covered pixels, and their copy on the way to the file.
   const std::size_t seen = seen_pixels(scene, lights, world);
   plan.bytes = 60'000'000 + scene.asset_bytes + seen * 140;
   for (const Mesh& mesh : world.meshes) {
@@ -240,7 +240,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   double temporary = 0;  // one body after the other
   const BodyPlanning planning{scene, world, lights, fewest_samples(plan.groups.size())};
   for (GroupPlan& group : plan.groups) {
-    // Measured for media that are one throughout.
+    // Fitted for homogeneous media.
     const bool varies = varies_inside(scene.media[group.medium]) &&
                         method_of(scene.settings.method).follows_textures_inside();
     if (is_too_thin_for_cells(group) || varies || is_too_large_for_cells(scene.settings, group))
@@ -252,9 +252,8 @@ Plan make_plan(const Scene& scene, const World& world) {
     temporary = std::max(temporary, memory.temporary);
     samples += memory.evaluated_samples;
   }
-  // The lattice beside shadow edges has 56 bytes a place: about as many places as pixels there, up to its
-  // finest level; and surface caches have their places, more as there are more pixels. Measured on bunnies: 30 to 60 bytes
-  // a pixel, 300 to 500 a sample above; 5 to 11 MB where a pixel has several camera rays.
+  // Upper bound by pixels and by samples, fitted to bench_plan: the irradiance lattice beside shadow edges,
+  // with about as many points as pixels at its finest level, and surface caches, finer at higher resolution.
   plan.bytes += std::min(60 * seen, 500 * samples);
   if (samples > 0 && scene.film.samples_per_pixel > 1) plan.bytes += 5'000'000;
   if (bounces_of(scene) > 0) plan.bytes += kBytesOfBouncePlaces;

@@ -16,17 +16,16 @@
 namespace opaline {
 namespace {
 
-// Fewer leave the irradiance itself unresolved, however far light travels inside; more than enough for any
-// preview. Where bodies are many, each is small in the picture, and all together have no more than kFewestOfAll.
+// Lower bounds resolving the irradiance itself, however far light travels inside. With many bodies, each is
+// small in the image, and all share kFewestOfAll.
 constexpr double kFewestSamples = 10000, kFewestOfAll = 2e6, kFewestOfMany = 100;
 constexpr double kSuspiciouslyFew = 100;
 constexpr const char* kTheMinimum = "the minimum";
 
-// As far apart as samples may be. Light transmitted at a point leaves within a few mean free paths around it;
-// what is nearer than the spacing comes from the irradiance at the shading point itself (SplitKernel), so
-// that one and a half of them are near enough, but for a medium in which light decays over a shorter way than
-// that: what it brings to the dark then hangs on where exactly the samples stand. Measured on bunnies: within
-// 1 % of the converged sum.
+// Largest sample spacing: 1.5 mean free paths, or the diffuse mean free path if that is shorter, but at least
+// one mean free path. SplitKernel takes transport below the spacing from the irradiance at the shading point
+// itself. Where diffuse light decays faster, the exitance in shadow depends on the exact sample positions, so
+// the spacing follows the decay.
 double widest_spacing(const DiffuseProfile& profile) {
   double widest = INFINITY;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -45,16 +44,16 @@ void warn_of_few_samples(const GroupPlan& group, double wanted, std::vector<std:
                     group.name, group.smallest_mean_free_path, wanted, group.area));
 }
 
-/// As the settings have it, if they do.
+/// Number of samples from the settings, if set.
 std::optional<double> set_samples(const Settings& settings, double area) {
   if (settings.samples) return double(*settings.samples);
   if (settings.sample_spacing) return area / (*settings.sample_spacing * *settings.sample_spacing);
   return {};
 }
 
-/// The least length over which diffused light fades, of the scattering channels, mm.
+/// Smallest diffuse mean free path of the scattering channels, mm.
 double shortest_fading(Medium medium) {
-  medium.profile = ProfileKind::dipole;  // the classical D, as of the equation that is solved
+  medium.profile = ProfileKind::dipole;  // classical D, as in the diffusion equation
   const DiffuseProfile profile = make_diffuse_profile(medium);
   double shortest = INFINITY;
   for (std::size_t c = 0; c < 3; ++c)
@@ -73,7 +72,7 @@ void choose_samples(const Scene& scene, double fewest, GroupPlan& group, std::ve
   const Settings& settings = scene.settings;
   const double mean_free_path = group.smallest_mean_free_path,
                spacing = widest_spacing(make_diffuse_profile(scene.media[group.medium]));
-  // Without any mean free path light leaves where it enters, and no number of samples is asked for.
+  // Without a mean free path, light leaves where it enters, and no samples are necessary.
   const double wanted = std::isfinite(spacing) ? group.area / (spacing * spacing) : fewest;
   double count = set_samples(settings, group.area).value_or(std::max(wanted, fewest));
   if (settings.samples) {
@@ -120,16 +119,16 @@ bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group) {
 }
 
 bool is_too_thin_for_cells(const GroupPlan& group) {
-  constexpr double kTooThin = .6;  // mean free paths: measured, src/volume/README.md
+  constexpr double kTooThin = .6;  // mean free paths; src/volume/README.md
   return group.thickness > 0 && group.thickness < kTooThin * group.smallest_mean_free_path;
 }
 
-// The cells of volume_diffusion: as asked for, but smaller where light fades within them, no more than memory should
-// hold, and several across a thin body.
+// Cell size of volume_diffusion: as set, smaller to resolve the decay of light and thin bodies, and larger to
+// limit memory.
 void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
                   std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 4, kSmallest = .25;
-  constexpr double kOfVarying = .5;    // a cell has one medium; light blurs what a mean free path hides
+  constexpr double kOfVarying = .5;    // a cell has one medium, and light blurs detail below a mean free path
   constexpr double kFewestFaces = 60;  // fewest faces of cells, on the surface
   const double length = group.smallest_mean_free_path;
   const Medium& medium = scene.media[group.medium];
@@ -153,15 +152,16 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
                     group.name, group.thickness / length));
 }
 
-// At least one sample where a cell cuts the surface; the number of parts of a cell's edge coming nearest to what is
-// asked for.
+// Divides a cell's edge to come close to the requested samples, with at least one sample per cell cut by the
+// surface.
 void choose_cut(const Settings& settings, double fewest, GroupPlan& group,
                 std::vector<std::string>& warnings) {
   const double whole = kCutSamplesPerFace * group.area / (group.cell * group.cell);
   const double wanted = set_samples(settings, group.area).value_or(fewest);
   double parts = std::min(std::round(std::sqrt(wanted / whole)),
                           std::floor(std::sqrt(double(settings.max_samples) / whole)));
-  // A wire thinner than a cell meets cells by its length, not by its area: finer ones would be many, and tell nothing.
+  // The cells along a wire thinner than a cell depend on its length, not its area: finer ones would be many
+  // and of no use.
   constexpr double kPartsOfThickness = 8;
   if (group.thickness > 0) parts = std::min(parts, kPartsOfThickness * group.thickness / group.cell);
   group.cell_parts = int(std::max(1., parts));

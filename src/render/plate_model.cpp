@@ -9,11 +9,11 @@
 namespace opaline {
 namespace {
 
-// Beyond this many mean free paths little goes through.
+// Thickness, in mean free paths, above which the transmittance is small.
 constexpr double kThick = 10;
-// Area over thickness squared: a ball has 28, a cube 54, a plate ten times as wide as thick 345.
+// Area over thickness squared: 28 of a ball, 54 of a cube, 345 of a plate ten times as wide as thick.
 constexpr double kFlat = 200;
-constexpr std::size_t kWalks = 20000;  // standard error of a share: .35 % at most
+constexpr std::size_t kWalks = 20000;  // standard error of a fraction: at most 0.35 %
 
 std::optional<PlateChannel> compare_channel(const DiffuseProfile& medium, std::size_t c, double thickness) {
   const double length = medium.mean_free_path[c];

@@ -50,7 +50,7 @@ std::vector<Light> recentred_lights(const Scene& scene, const World& world) {
 
 Rgb reduced_absorption(Medium medium) {
   if (auto* artist = std::get_if<ArtistMedium>(&medium.coefficients))
-    for (std::size_t c = 0; c < 3; ++c)  // the colour alone decides; no radius would hide it
+    for (std::size_t c = 0; c < 3; ++c)  // by the colour alone; no radius would hide it
       if (!(artist->subsurface_radius[c] > 0)) artist->subsurface_radius[c] = 1;
   const DiffuseProfile profile = make_diffuse_profile(medium);
   Rgb absorbed{};

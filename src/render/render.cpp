@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-// Pixels without anything stay as they are: zero, and their memory untouched.
+// Skips empty pixels: they are zero already, and their memory stays untouched.
 std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, const Scene& scene,
                   RenderResult& result) {
   Image& image = result.image;
@@ -29,7 +29,7 @@ std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, c
   return non_finite;
 }
 
-// True if so much may be held for each camera ray.
+// True if so many bytes may be cached per camera ray.
 bool fits(const Film& film, std::size_t bytes) {
   return std::size_t(film.resolution[0]) * std::size_t(film.resolution[1]) *
              std::size_t(film.samples_per_pixel) * bytes <=

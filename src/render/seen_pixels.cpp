@@ -22,8 +22,8 @@ constexpr int kCells = 64;      // along each side, at most
 constexpr int kNarrowest = 16;  // pixels of a cell
 constexpr double kApart = 3;    // pixels around a triangle: the filter's radius, and rounding
 
-/// The cells around a place of the picture, outside of the part -1 or their number: x0, -x1, y0, -y1, so what
-/// holds two boxes is the smaller of each.
+/// Cells around a position in the image, as x0, -x1, y0, -y1, so the union of two boxes is a minimum. Outside
+/// the part, a coordinate is -1 or the number of cells.
 typedef short CellBox __attribute__((vector_size(8)));
 CellBox around_both(const CellBox& a, const CellBox& b) {
   return a < b ? a : b;
@@ -39,7 +39,7 @@ class SeenCells {
         down_(double(rows_) / (part.y1 - part.y0)) {}
 
   CellBox around(const CameraRays::FilmPlace& place) const {
-    // Truncation of what is not negative: std::floor is a call without SSE 4.1.
+    // Truncates a value >= 0; without SSE 4.1, std::floor is a function call.
     const auto cell = [](double at, int cells) {
       return short(short(std::clamp(at + 1, 0.0, double(cells + 1))) - 1);
     };
@@ -72,7 +72,7 @@ class SeenCells {
   std::array<std::uint64_t, kCells> seen_{};  // row by row, a bit a column
 };
 
-/// Returns false where a light may be seen anywhere.
+/// Returns false if a light may be visible anywhere.
 bool add_light(const Light& light, const CameraRays& rays, SeenCells& cells) {
   if (const auto* many = std::get_if<ManyLights>(&light.source))
     return std::ranges::all_of(many->tree->lights(), [&](const Light& one) {

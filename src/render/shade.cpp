@@ -39,7 +39,8 @@ Appearance opaque_appearance(const Shape& shape) {
   return appearance;
 }
 
-/// follows_light: whether its light is followed inside, and so leaves by angle as it does a half space
+/// follows_light: true if the method traces light inside, and its radiance has the angular distribution of a
+/// half space
 Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool follows_light) {
   if (!shape.medium) return opaque_appearance(shape);
   const Medium& medium = scene.media[*shape.medium];
@@ -53,10 +54,10 @@ Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool follows_
   return appearance;
 }
 
-/// Turns a normal that maps have bent back until what it mirrors towards the eye comes from outside.
-/// in    direction: of the ray that met the point, of any length
+/// Bends the shading normal back until the camera direction reflects to the outside of the surface.
+/// in    direction: of the camera ray at the point, of any length
 void keep_mirrored_outside(SurfacePoint& point, const Vec3f& direction) {
-  constexpr float kLeastCosine = 0.01f;  // least cosine of what is mirrored, with the geometric normal
+  constexpr float kLeastCosine = 0.01f;  // least cosine of the reflected direction with the geometric normal
   const Vec3f d = normalized(direction), mirrored = d - point.normal * (2 * dot(d, point.normal));
   const float cosine = dot(mirrored, point.geometric);
   if (cosine >= kLeastCosine || !(dot(d, point.geometric) < 0)) return;
@@ -75,7 +76,7 @@ RgbF scattered_exit(const AngularExit& exit, float cosine, const SurfaceHits& hi
   return factor;
 }
 
-// Gathering spread of the cones around some 64 directions over a hemisphere, for textures that they meet.
+// Spread of the cones around some 64 directions over a hemisphere, for texture filtering.
 constexpr float kGatheringSpread = 0.25f;
 
 constexpr std::uint64_t kGatheringSeed = 1;
@@ -89,7 +90,7 @@ SurfacePoint point_of(const Hit& hit, const RayScene& rays) {
   return rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
 }
 
-// Points of the rays that hit something.
+// Surface points of the rays with a hit.
 std::vector<SurfacePoint> points_of(std::span<const TracedRay> traced, const RayScene& rays) {
   std::vector<SurfacePoint> points;
   for (const auto& [ray, hit] : traced)

@@ -19,21 +19,23 @@ class BouncedLight;
 
 class Shader {
  public:
-  /// entry_samplers: of Method::direct, one a group.
+  /// entry_samplers: of Method::direct, one per group.
   explicit Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers = {});
 
-  /// Shades a batch of traced camera rays, one PixelSample a ray. keys: one a ray, for its light samples.
-  /// held: how lights reach what the rays met, added to, or null. Returns the number of exitance queries.
+  /// Shades a batch of traced camera rays, one PixelSample per ray; returns the number of exitance queries.
+  /// in    keys: random-number keys of the rays' light samples; held: cached light transport of the batch,
+  ///       extended; or null
   std::size_t shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                     std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
-  /// Radiance along rays that hit surfaces, W/(mm^2 sr): diffuse reflection, and specular reflection of light taken as
-  /// it were even; by a ray to each light. held: how lights reach these surfaces, added to, or null.
+  /// Outgoing radiance along rays that hit surfaces, W/(mm^2 sr): diffuse, and specular under an
+  /// approximately uniform illumination. Traces one ray per light.
+  /// in    held: cached light transport at these surfaces, extended; or null
   std::vector<RgbF> radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                    HeldView::Batch* held = nullptr) const;
 
-  /// Hits of rays that met surfaces whose light depends on the irradiance at the hit, and the boundary that light
-  /// enters through there; 0: none.
+  /// Hits with exitance depending on the irradiance at the hit itself. eta: of the boundary transmitting it;
+  /// 0: none.
   struct SeenSurfaces {
     std::size_t field;
     SurfaceHits hits;
@@ -42,17 +44,17 @@ class Shader {
   std::vector<SeenSurfaces> surfaces_along(std::span<const TracedRay> rays,
                                            std::span<const std::uint64_t> keys) const;
 
-  /// From now on adds it to the light at hits; null: none.
+  /// Sets the indirect light to be added at hits; null: none.
   void set_bounced_light(const BouncedLight* bounced) { bounced_ = bounced; }
 
-  /// False where rays that hit nothing see nothing either.
+  /// True if rays without a hit may see a light.
   bool has_visible_lights() const { return !seen_.emitters.empty() || !seen_.surroundings.empty(); }
 
  private:
-  /// Lights that rays meet.
+  /// Lights visible to rays.
   struct MetLights {
     std::vector<Light> emitters;      ///< those with an area
-    std::vector<Light> surroundings;  ///< those all around
+    std::vector<Light> surroundings;  ///< environments
 
     void add(const Light& light);
     EmitterHit nearest(const Vec3f& origin, const Vec3f& direction, float far) const;
@@ -63,16 +65,16 @@ class Shader {
     std::span<const TracedRay> rays;
     std::span<const std::uint64_t> keys;
     std::span<PixelSample> out;
-    /// How wide the cones around the rays are, for textures: at their origins (empty: 0) and more by their length.
+    /// Cone widths of the rays, for texture filtering: at the origins (empty: 0), and per length.
     float spread = 0;
     std::span<const float> widths = {};
-    int mirrors = 0;  ///< that the rays have left, one after the other
+    int mirrors = 0;  ///< number of specular reflections before
     bool is_of_camera = false;
   };
-  /// Rays leaving surfaces, as their cones do.
+  /// Reflected rays and their cones.
   struct Cones {
     float spread = 0;
-    std::vector<float> widths;  ///< empty: nobody asks
+    std::vector<float> widths;  ///< empty: unused
   };
   struct GlossyHits;
 
@@ -101,7 +103,7 @@ class Shader {
   std::vector<PixelSample> seen_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                       const Cones& cones, const Pass& pass, int mirrors,
                                       HeldView::Batch* held = nullptr) const;
-  /// Specular reflection without rays: the irradiance, taken as uniform over the hemisphere.
+  /// Specular reflection without rays, of an irradiance taken as uniform over the hemisphere.
   void add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch) const;
   float width_at(const RayBatch& batch, std::size_t ray) const;
   bool mirrors_surfaces() const {
@@ -110,10 +112,10 @@ class Shader {
 
   const RenderInput& input_;
   std::vector<Light> lights_;            // recentred
-  std::vector<RgbF> emitted_;            // one a light
+  std::vector<RgbF> emitted_;            // one per light
   MetLights met_, seen_;                 // by any ray, by those of the camera
-  std::vector<Light> unit_lights_;       // all, with an emission of 1, where coats can be held
-  std::vector<Appearance> appearances_;  // one a mesh
+  std::vector<Light> unit_lights_;       // all with unit emission, if reflections are cacheable
+  std::vector<Appearance> appearances_;  // one per mesh
   SurfaceTextures textures_;
   float pixel_spread_ = 0;  // pixel spread of camera rays
   Fields fields_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Specular reflection at the boundaries of translucent bodies: of lights, environments, and surfaces as they are lit. A smooth
-// boundary is one ray. A rough one draws directions from its lobe and from the lights, weighted by the power
+// Specular reflection at dielectric and metallic boundaries: of lights, environments and other surfaces. A
+// smooth boundary traces one ray. A rough boundary samples its lobe and the lights, combined by the power
 // heuristic (Veach & Guibas 1995).
 #include <algorithm>
 #include <numbers>
@@ -13,16 +13,16 @@
 namespace opaline {
 namespace {
 
-// Facets per camera ray, with one ray per pixel, and directions to each light.
+// Lobe samples and light samples per camera ray, at one ray per pixel.
 constexpr int kFacets = 16, kLightSamples = 16;
-// These, too, over those of what is seen in a mirror.
+// Factor by which both are reduced behind a specular reflection.
 constexpr int kFewerOfMirrored = 4;
-// One after the other that a camera ray is followed through: metals, and coats, which mirror less. A further one mirrors
-// the light arriving there as if it were even.
+// Maximum specular reflections of a camera ray: if all are metallic, and if all are dielectric. Further
+// reflections are approximated by a uniform illumination.
 constexpr int kMostMirrors = 4, kMostCoats = 2;
-// Shadow rays towards a surface seen in a mirror, over those where it is seen: a mirror takes most away.
+// Factor by which shadow rays are reduced behind a specular reflection.
 constexpr int kFewerInMirrors = 4;
-// Glossy spread of the cones around directions of a lobe, for textures that they meet.
+// Spread of the cones around the directions of a lobe, for texture filtering.
 constexpr float kGlossySpread = .1f;
 
 TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
@@ -30,11 +30,11 @@ TracedRay leaving(const SurfacePoint& point, const Vec3f& direction) {
   return {{point.position + point.geometric * (side * point.offset), direction}, {}};
 }
 
-// The frame of a hit, in which RoughBoundary counts.
+// Shading frame of a hit, as in RoughBoundary.
 struct Frame {
   Vec3f x, y, z, view;
 
-  /// tangent: 0 where the boundary is the same all around
+  /// tangent: 0 for an isotropic boundary
   Frame(const SurfacePoint& point, const Vec3f& tangent, const Vec3f& towards_eye) : z(point.normal) {
     if (tangent == Vec3f{}) {
       tangent_frame(z, x, y);
@@ -57,19 +57,19 @@ void add_hit(const SurfaceHits& hits, std::size_t i, SurfaceHits& to) {
   if (!hits.textures.empty()) to.textures.push_back(hits.textures[i]);
 }
 
-// Seen radiance of a light that has an area; is_free: the ray meets no surface.
+// Radiance of a light with an area, or of an environment. is_free: the ray hits no surface.
 RgbF seen_radiance(const Light& light, const Ray& ray, bool is_free) {
   const EmitterHit emitter = intersect_emitter(light, ray.origin, ray.direction, ray.far);
   return emitter.hit ? emitter.radiance : is_free ? background(light, ray.direction) : RgbF{};
 }
 
-// Rather than the balance: where either way of drawing is much the better one, the other's noise is left out.
+// Power heuristic: less noise than the balance heuristic where one strategy is much better.
 float power(float own, float other) {
   const float ratio = other / own;
   return own > 0 ? 1 / (1 + ratio * ratio) : 0;
 }
 
-// Lobes that so many before one may be like.
+// Number of recent lobes searched for a similar one.
 constexpr std::size_t kRecentLobes = 8;
 
 bool are_alike(const Lobe& a, const Lobe& b) {
@@ -126,7 +126,8 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
     const float cosine = cos_view(hits.points[i], batch.rays[hits.rays[i]].ray.direction);
     PixelSample& sample = batch.out[hits.rays[i]];
     RgbF arriving = sample.irradiance * (kInversePi / (1 - appearance.average_reflectance));
-    // A field that does not know the irradiance: what left, over what leaves of even light.
+    // Without an irradiance in the field, it follows from the exitance: outgoing light over that of uniform
+    // illumination.
     const float leaving = appearance.translucent ? 1 - appearance.reflectance(cosine) : 0;
     if (arriving == RgbF{} && leaving > 0)
       for (std::size_t c = 0; c < 3; ++c)
@@ -135,7 +136,7 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
   }
 }
 
-// Lights without an area have no extent to be seen by.
+// Lights without an area are invisible in smooth boundaries.
 void Shader::add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass) const {
   std::vector<TracedRay> mirrored;
   Cones cones{batch.spread, {}};
@@ -156,16 +157,16 @@ void Shader::add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const 
   }
 }
 
-/// Hits of rough boundaries, and what it takes to draw from their lobes.
+/// Hits of rough boundaries, and the tables for sampling their lobes.
 struct Shader::GlossyHits {
   const SurfaceHits& hits;
   const RayBatch& batch;
   std::vector<Frame> frames;
-  std::vector<Appearance> textured;  // where textures have their say
+  std::vector<Appearance> textured;  // with textures only
   std::vector<const Appearance*> appearances;
   int facets, to_lights;
   std::uint64_t seed;
-  std::vector<std::uint64_t> keys;  // keys of directions, in the sequence of the pixel
+  std::vector<std::uint64_t> keys;  // random-number keys, in the sequence of the pixel
   std::vector<Lobe> lobes;
   std::vector<RoomLobe> rooms;  // reflections of an environment by the lobes, if any
 
@@ -179,7 +180,7 @@ struct Shader::GlossyHits {
     to_lights = (kLightSamples + shared_by - 1) / shared_by;
     textured.reserve(hits.textures.size());
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
-      // Behind a mirror directions are drawn by themselves: those of the mirror have the pixel's sequence.
+      // Directions behind a reflection are independent: the first reflection uses the pixel's sequence.
       keys.push_back(rays.mirrors > 0 ? hash_bits(seed, hits.keys[i])
                                       : key_in_pixel(hits.keys[i], std::uint64_t(spp)));
       frames.emplace_back(hits.points[i], hits.textures.empty() ? Vec3f{} : hits.textures[i].tangent,
@@ -194,7 +195,7 @@ struct Shader::GlossyHits {
         shader.lights_, [](const Light& l) { return std::holds_alternative<EnvironmentLight>(l.source); });
     if (room == shader.lights_.end()) return;
     rooms.reserve(lobes.size());
-    // Those of neighbouring rays are alike: one tells for others.
+    // Neighbouring rays have similar lobes, which share one table.
     std::vector<Lobe> known;
     for (std::size_t i = 0; i < lobes.size(); ++i) {
       const auto recent = known.end() - std::ptrdiff_t(std::min(known.size(), kRecentLobes));
@@ -209,14 +210,14 @@ struct Shader::GlossyHits {
     }
   }
   const RoughBoundary& boundary(std::size_t i) const { return *appearances[i]->rough; }
-  // Color of what is mirrored from a direction, local.
+  // Reflectance by direction, in the local frame.
   RgbF color(std::size_t i, const Vec3f& light) const {
     if (!(appearances[i]->metalness > 0)) return RgbF(1);
     return appearances[i]->mirror_color(dot(frames[i].view, normalized(frames[i].view + light)),
                                         boundary(i).reflected_once(frames[i].view.z));
   }
   RgbF& specular(std::size_t i) const { return batch.out[hits.rays[i]].specular; }
-  // How many directions each way of drawing puts there, 1/sr.
+  // Sampling densities of the lobe and of a light, times their number of samples, 1/sr.
   float of_lobe(std::size_t i, const Vec3f& towards) const {
     return float(facets) * boundary(i).density(frames[i].view, frames[i].local(towards));
   }
@@ -228,11 +229,11 @@ struct Shader::GlossyHits {
 
   struct LobeRay {
     float weight;
-    RgbF color;  // besides
+    RgbF color;  // factor of metals
     std::uint32_t hit;
-    bool is_again;  // facets around a bent normal mirrored it into the surface, which sends it back
+    bool is_again;  // reflected into the surface by a bent normal, and from there outwards again
   };
-  // In directions of the lobes, hit by hit; `rays` are to be traced.
+  // Samples directions of the lobes, hit by hit; fills `rays`, to be traced.
   std::vector<LobeRay> draw_from_lobes(std::vector<TracedRay>& rays) const {
     std::vector<LobeRay> drawn;
     for (std::size_t i = 0; i < hits.rays.size(); ++i) {
@@ -255,8 +256,8 @@ struct Shader::GlossyHits {
   }
 };
 
-// Lights whose radiance is their emission times what does not depend on it, to the last bit; no metals, whose colour is
-// in what they mirror.
+// True if the radiance of all lights is exactly proportional to their emission and no surface is a metal, as
+// a metal's colour depends on the direction.
 bool Shader::can_hold_coats() const {
   const auto has_plain_radiance = [](const Light& light) {
     return is_delta(light) || std::holds_alternative<EnvironmentLight>(light.source) ||
@@ -282,7 +283,7 @@ void Shader::add_glossy(const SurfaceHits& hits, const RayBatch& batch, const Pa
   held->coat = std::move(coat);
 }
 
-// The same sums in the same order.
+// Repeats add_highlights and add_reflections, sum by sum.
 void Shader::add_held_coat(HeldView::Coat& coat, const RayBatch& batch, const Pass& pass) const {
   for (const auto& [ray, light, unit, weight] : coat.lights)
     batch.out[ray].specular += emitted_[light] * unit * weight;
@@ -292,7 +293,7 @@ void Shader::add_held_coat(HeldView::Coat& coat, const RayBatch& batch, const Pa
     batch.out[coat.rays[m]].specular += (seen[m].diffuse + seen[m].specular) * coat.shares[m];
 }
 
-// By directions to the lights.
+// Samples the lights.
 void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) const {
   const PointIrradianceInput lighting{input_.rays, glossy.hits.points, glossy.keys, lights_,
                                       0,           glossy.to_lights,   glossy.seed};
@@ -311,18 +312,18 @@ void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) cons
       glossy.lobes);
 }
 
-// By directions of the lobe.
+// Samples the lobes.
 void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldView::Coat* coat) const {
   struct Met {
-    float weight;  // weight of all rays that met surfaces
-    RgbF share;    // these, each in its colour
+    float weight;  // sum over the rays that hit surfaces
+    RgbF share;    // the same with each ray's colour
     std::uint32_t hit;
   };
   std::vector<TracedRay> rays;
   const std::vector<GlossyHits::LobeRay> drawn = glossy.draw_from_lobes(rays);
   input_.rays.intersect(rays);
 
-  // One surface represents all surfaces that the rays of a hit meet.
+  // One randomly chosen surface represents all surfaces hit by the rays of a hit.
   std::vector<Met> met;
   Cones cones{kGlossySpread, {}};
   std::vector<TracedRay> met_rays;

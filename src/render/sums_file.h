@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture in a file of --resume.
+// Image sums of --resume.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// error Error{bad_input} with the way out: damaged, or no picture
+/// error Error{bad_input} with a remedy: damaged, or not an image
 inline Image read_sums_file(const std::string& path) {
   try {
     return read_image(path);

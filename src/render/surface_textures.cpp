@@ -48,13 +48,13 @@ RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
   return color;
 }
 
-// A whole number of 8 bits has no middle of the range: both beside it are as good.
+// 8-bit normal maps have no exact zero: the values 127 and 128 on both sides of it count as zero.
 float slope_of(float value) {
   const float slope = 2 * value - 1;
   return std::abs(slope) < 1.01f / 255 ? 0 : slope;
 }
 
-/// error unless the file has a picture wherever the mesh's triangles have their middles
+/// error if a tile of the texture is missing at the centroid of a triangle
 void check_tiles(const Texture& texture, const Mesh& mesh, const std::string& shape) {
   if (texture.file->has_tile(-1, -1)) return;
   for (const CornerUvs& uvs : mesh.uvs) {
@@ -80,12 +80,12 @@ RgbF powered(const RgbF& value, double exponent) {
   return result;
 }
 
-/// Around the shading normal, the way that u goes and the way that v does; zeros where the UVs do not tell.
+/// Directions of u and v in the shading tangent plane; zeros if the UVs are degenerate.
 struct TangentFrame {
   Vec3f tangent{}, bitangent{};
 };
 
-/// By the mesh's tangent where it has one: its handedness is about the side that is outside.
+/// From the mesh's tangent, if present. Its handedness refers to the outside of the surface.
 TangentFrame frame_of(const SurfaceTextures::Place& place, const SurfacePoint& point) {
   const auto& [direction, handedness] = place.tangent;
   const Vec3f own = normalized(direction - point.normal * dot(direction, point.normal));
@@ -119,7 +119,7 @@ void map_normal(const Texture& texture, const SurfaceTextures::Place& place, Sur
 Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
   const auto [along_u, along_v] =
       texture.file->slope(texture_place(texture, *place.uv, place.footprint), texture.channel);
-  // Angle of the picture's u and v, by the mesh's.
+  // Angle of the image's u and v, by the mesh's.
   const double angle = texture.uv_rotation * std::numbers::pi / 180;
   const double cosine = std::cos(angle), sine = std::sin(angle);
   const Vec3f x = place.uv->gradient_u * float(texture.uv_scale[0]),

@@ -9,8 +9,8 @@ namespace {
 constexpr int kTile = 16;
 constexpr std::uint64_t kBatchRays = 512;
 
-// Rays of a batch: all samples of a square of pixels, or where they are too many some of one pixel's. So they lie as close
-// together as can be, and what is known of a pixel's rays is known at once.
+// Rays of a batch: all samples of a square of pixels, or part of one pixel's samples if those are too many.
+// Keeps rays coherent, and finishes a pixel at once.
 struct Batch {
   Rectangle pixels;
   std::uint64_t first, end;  // samples
@@ -70,7 +70,7 @@ Image empty_image(const Rectangle& part, const Film& film, std::vector<std::stri
 TileRenderer::TileRenderer(const RenderInput& input, const Shader& shader)
     : input_(input), camera_(input.scene.camera, input.scene.film, input.world), shader_(shader) {}
 
-// Finds what the rays hit, or takes it from what is held.
+// Intersects the rays, or copies cached hits.
 void TileRenderer::trace(std::span<TracedRay> rays, HeldView::Batch* held) const {
   if (held != nullptr && held->is_traced) {
     for (std::size_t i = 0; i < held->hits.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures tile by tile.
+// Rendering by tiles.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-/// Calls use(x, y, i) for the pixels of a tile that the part has; i: row by row in the tile.
+/// Calls use(x, y, i) for the pixels of a tile inside the part; i: row by row in the tile.
 template <class Use>
 void for_each_pixel(const Rectangle& tile, const Rectangle& part, const Use& use) {
   for (int y = std::max(tile.y0, part.y0); y < std::min(tile.y1, part.y1); ++y)
@@ -21,7 +21,7 @@ void for_each_pixel(const Rectangle& tile, const Rectangle& part, const Use& use
       use(x, y, std::size_t(y - tile.y0) * std::size_t(tile.x1 - tile.x0) + std::size_t(x - tile.x0));
 }
 
-/// A picture of the part with these channels, all zero.
+/// A black image of the part with these channels.
 Image empty_image(const Rectangle& part, const Film& film, std::vector<std::string> channels);
 
 class TileRenderer {
@@ -29,12 +29,12 @@ class TileRenderer {
   TileRenderer(const RenderInput& input, const Shader& shader);
 
   struct Tile {
-    std::vector<PixelSample> sums;  ///< row by row; over the samples of a pixel; empty: nothing was seen
+    std::vector<PixelSample> sums;  ///< row by row; over the samples of a pixel; empty: nothing was hit
     std::size_t queries = 0;
   };
 
-  /// All samples of the tile's pixels. Another pass: other random numbers, the same camera rays. held: what
-  /// was found out of this tile, added to, or null.
+  /// Renders all samples of the tile's pixels. Passes differ in random numbers, not in camera rays. held:
+  /// cached results of this tile, extended; or null.
   Tile render(const Rectangle& tile, const Pass& pass = {},
               std::vector<HeldView::Batch>* held = nullptr) const;
 

@@ -25,7 +25,7 @@ Frame frame_of(const Mesh& mesh, std::uint32_t triangle) {
   return {origin, x, cross(z, x), z};
 }
 
-/// A turn and a shift.
+/// A rotation and a translation.
 struct Motion {
   Frame from, to;
   Vec3d turn(const Vec3d& v) const {
@@ -39,13 +39,13 @@ double double_area(const Mesh& mesh, std::size_t triangle) {
   return length(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]));
 }
 
-/// Vertices may be this far from where a motion of the whole takes them, mm.
+/// Largest deviation of vertices from a rigid motion, mm.
 double most_apart(const Mesh& mesh) {
   const Bounds box = bounds(mesh);
   return 1e-6 * length(box.high - box.low);
 }
 
-/// True if some edges, of all there are, have lengths that no motion leaves them.
+/// True if some edge lengths change, which excludes rigid motion.
 bool has_other_edges(const CarryInput& input) {
   constexpr std::size_t kLooks = 64;
   for (std::size_t m = 0; m < input.from_meshes.size(); ++m) {
@@ -65,7 +65,7 @@ bool has_other_edges(const CarryInput& input) {
   return false;
 }
 
-/// The motion that takes the first mesh's largest triangle along, if it does so with every vertex of all.
+/// Rigid motion of the first mesh's largest triangle, if it applies to all vertices.
 std::optional<Motion> common_motion(const CarryInput& input) {
   if (has_other_edges(input)) return {};
   const Mesh &before = input.from.meshes[input.from_meshes[0]], &after = input.to.meshes[input.to_meshes[0]];
@@ -110,7 +110,7 @@ SurfaceSamples moved(const CarryInput& input, const Motion& motion) {
   return result;
 }
 
-/// Every sample by its triangle's place in the list.
+/// Each sample by its triangle's index in the list.
 std::vector<SampleGrid::Place> carried_places(const CarryInput& input, const TriangleList& triangles) {
   const std::vector<std::size_t> place = places_of(input.from_meshes);
   std::vector<std::vector<std::uint32_t>> listed(input.from_meshes.size());  // place of each mesh's triangles
@@ -124,7 +124,7 @@ std::vector<SampleGrid::Place> carried_places(const CarryInput& input, const Tri
   return places;
 }
 
-/// Numbers of the grid's samples in the order of finished ones.
+/// Numbers of the grid's samples in the final order.
 std::vector<std::uint32_t> finished_order(const TriangleList& triangles, const SampleGrid& grid) {
   std::vector<std::uint32_t> order(grid.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -159,7 +159,7 @@ SurfaceSamples divided_anew(const CarryInput& input, const TriangleList& triangl
   return result;
 }
 
-/// Whatever cells the surface was sampled with, for samples that came without.
+/// Cells of the original surface, for samples without cells.
 SurfaceCells divided_before(const CarryInput& input) {
   const TriangleList triangles(input.from, input.from_meshes);
   const float radius = float(input.samples.radius);
@@ -170,7 +170,7 @@ SurfaceCells divided_before(const CarryInput& input) {
   return collect_cells(triangles, pieces, finished_order(triangles, grid), input.from_meshes);
 }
 
-/// Where the samples have come to.
+/// New positions of the samples.
 std::vector<SurfacePoint> points_after(const CarryInput& input) {
   const std::vector<SurfaceSample>& samples = input.samples.samples;
   const std::vector<std::size_t> place = places_of(input.from_meshes);
@@ -184,7 +184,7 @@ std::vector<SurfacePoint> points_after(const CarryInput& input) {
   return points;
 }
 
-/// True if samples may have to go or come.
+/// True if samples may have to be removed or added.
 bool may_need_mending(const CarryInput& input, std::span<const PlainTriangle> before,
                       std::span<const PlainTriangle> after, std::span<const SurfacePoint> points) {
   for (std::size_t t = 0; t < after.size(); ++t)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the pieces of a divided surface to each sample's cell, and from the cells to shares of a surface that
-// bent.
+// Conversion of a divided surface's pieces to each sample's cell, and of cells to fractions of a deformed
+// surface.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@
 
 namespace opaline {
 
-/// Pieces sorted by their samples.
-/// in    order: of each sample its number in the pieces' grid; meshes: of the triangles' list
+/// Sorts pieces by their samples.
+/// in    order: each sample's number in the pieces' grid; meshes: of the triangles' list
 SurfaceCells collect_cells(const TriangleList& triangles, std::span<const SurfacePiece> pieces,
                            std::span<const std::uint32_t> order, std::span<const std::uint32_t> meshes);
 
-/// A triangle as a cell's part needs it, in one place of memory.
+/// A triangle's data for cell parts, contiguous in memory.
 struct PlainTriangle {
   Vec3f corner, u_edge, v_edge;
   float area;
 };
 
-/// All triangles of a surface, counted through its meshes.
+/// All triangles of a surface, numbered through its meshes.
 std::vector<PlainTriangle> plain_triangles(const World& world, std::span<const std::uint32_t> meshes);
 
 /// Surface fraction of a sample's cell on the triangles of the new frame, relative to the sample's position.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A convex polygon in a plane, cut by straight lines.
+// Convex polygon in a plane, clipped by straight lines.
 #pragma once
 
 #include <emmintrin.h>
@@ -33,7 +33,7 @@ class ConvexPolygon {
     const std::uint64_t all = (std::uint64_t(1) << size_) - 1, outside = sides(nx, ny, limit, side) & all;
     if (outside == 0) return;
     if (outside == all) return clear();
-    // Bit i: of corner i and the next one, one is outside.
+    // Bit i: one of corner i and the next is outside, the other inside.
     const std::uint64_t crossed = outside ^ (outside >> 1 | (outside & 1) << (size_ - 1));
     const Corners& from = corners_[now_];
     now_ = 1 - now_;
@@ -69,13 +69,13 @@ class ConvexPolygon {
   }
 
  private:
-  static constexpr std::size_t kBlock = 4;  // corners looked at together, some of them past the last
+  static constexpr std::size_t kBlock = 4;  // corners processed together, some of them padding
   static constexpr std::size_t kRoom = kMostClips + kBlock;
   using Corners = std::array<Point2, kRoom>;
 
   static __m128d load(const Point2& p) { return _mm_load_pd(&p.x); }
 
-  // Each corner's nx x + ny y - limit. Bits of those above zero; those past the last corner are of no use.
+  // nx x + ny y - limit of each corner. Bits of those above zero; undefined for padding.
   std::uint64_t sides(double nx, double ny, double limit, std::array<double, kRoom>& side) const {
     const __m128d normal = _mm_setr_pd(nx, ny);
     const auto pair = [&](std::size_t i) {
@@ -92,7 +92,7 @@ class ConvexPolygon {
   }
 
   std::array<Corners, 2> corners_;
-  std::size_t now_ = 0;  // which of them; the other takes what a clip leaves
+  std::size_t now_ = 0;  // current buffer; clips write to the other
   std::size_t size_ = 0;
 };
 

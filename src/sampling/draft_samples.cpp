@@ -14,7 +14,7 @@
 namespace opaline {
 namespace {
 
-constexpr std::uint32_t kCells = 32;  // along each axis: what is closer together needs no order
+constexpr std::uint32_t kCells = 32;  // along each axis: finer order is unnecessary
 
 struct Piece {
   std::uint32_t mesh, triangle;
@@ -36,7 +36,7 @@ std::vector<Piece> pieces_of(const World& world, std::span<const std::uint32_t> 
   return pieces;
 }
 
-/// Indices of the pieces by cell along the Morton curve, in the order of the file within each.
+/// Indices of the pieces by cell along the Morton curve, in file order within each.
 std::vector<std::uint32_t> morton_order(const std::vector<Piece>& pieces) {
   Vec3d low = pieces[0].centre, high = low;
   for (const Piece& piece : pieces) widen(low, high, piece.centre);
@@ -54,7 +54,7 @@ std::vector<std::uint32_t> morton_order(const std::vector<Piece>& pieces) {
   return order;
 }
 
-/// In the middle of a triangle, or anywhere on one that has several.
+/// Centroid of a triangle, or a random point of one with several samples.
 SurfaceSample sample_on(const World& world, const Piece& piece, double share, const Vec3d& centroid,
                         std::size_t index) {
   SurfaceSample sample;
@@ -86,7 +86,7 @@ SurfaceSamples draft_samples(const World& world, std::span<const std::uint32_t> 
   result.radius = .7 * std::sqrt(share);
   std::vector<SurfaceSample>& samples = result.samples;
   samples.reserve(count);
-  double missing = share;  // missing area of the current part
+  double missing = share;  // remaining area of the current part
   Vec3d moment{};
   std::uint32_t middle = 0;
   const auto take = [&](std::uint32_t p, double area) {
@@ -110,7 +110,7 @@ SurfaceSamples draft_samples(const World& world, std::span<const std::uint32_t> 
     }
     take(p, left);
   }
-  if (samples.size() < count) finish();  // rounding kept a little from it
+  if (samples.size() < count) finish();  // remainder of rounding
   std::ranges::sort(samples, {}, [&](const SurfaceSample& s) {
     check();
     return std::tie(s.mesh, s.triangle, s.u, s.v);

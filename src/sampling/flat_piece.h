@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A flat convex piece of the surface with three or four corners, and how far the samples are from it.
+// Flat convex piece of the surface with three or four corners, and its distances to samples.
 #pragma once
 
 #include <emmintrin.h>
@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// In doubles for its area, with its corners in floats for distances.
+/// Stored in double for its area; corners in float for distances.
 template <std::size_t kCorners>
 struct FlatPiece {
   static_assert(kCorners == 3 || kCorners == 4);
@@ -22,7 +22,7 @@ struct FlatPiece {
   std::array<Vec3f, kCorners> corners;
   __m128 x, y, z;  // coordinates of the corners
   Vec3f center;
-  float extent;  // radius of the ball around the centre, rounded up so that floats lose no owner
+  float extent;  // radius of the ball around the centre, rounded up so floats lose no owner
 
   explicit FlatPiece(const std::array<Vec3d, kCorners>& points_) : points(points_) {
     Vec3d sum = points[0];
@@ -46,14 +46,14 @@ struct FlatPiece {
     extent = float(std::sqrt(extent2) * 1.0001);
   }
 
-  /// Squared distances of the corners from p; of three corners the last lane is of no use.
+  /// Squared distances of the corners from p; the last lane is undefined for three corners.
   __m128 squared_distances(const Vec3f& p) const {
     const __m128 dx = _mm_sub_ps(x, _mm_set1_ps(p.x)), dy = _mm_sub_ps(y, _mm_set1_ps(p.y)),
                  dz = _mm_sub_ps(z, _mm_set1_ps(p.z));
     return _mm_add_ps(_mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy)), _mm_mul_ps(dz, dz));
   }
 
-  /// The box of the balls around the corners that have these squared radii, and slightly more.
+  /// Box of the balls around the corners with these squared radii, slightly enlarged.
   std::array<Vec3f, 2> box_around(__m128 squared) const {
     alignas(16) std::array<float, 4> squares;
     _mm_store_ps(squares.data(), squared);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A slice across a triangle that is much longer than it is high.
+// Slice across a triangle far longer than high.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace opaline {
 
-/// The quadrilateral a b c d between a short side a b and a short side c d; the first may be a point.
-/// Halving a needle by its longest side gives needles of the same shape: as many as the square of its length
-/// over theirs. Slices across it are as many as their length goes into its own.
+/// The quadrilateral a b c d between a short side a b, possibly a point, and a short side c d. Halving a
+/// needle at its longest side gives needles of the same shape, in a number quadratic in the ratio of lengths;
+/// slicing across is linear in it.
 struct NeedlePiece : FlatPiece<4> {
   NeedlePiece(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) : FlatPiece({a, b, c, d}) {}
 
@@ -32,7 +32,7 @@ struct NeedlePiece : FlatPiece<4> {
     return {a, x_axis, cross(n, x_axis)};
   }
 
-  /// The two halves across the length, or along it where the slice is wider than it is long by now.
+  /// The two halves across the length, or along it if the slice is now wider than long.
   std::array<NeedlePiece, 2> halves() const {
     const auto& [a, b, c, d] = points;
     const double along = std::max(dot(d - a, d - a), dot(c - b, c - b)),
@@ -46,8 +46,8 @@ struct NeedlePiece : FlatPiece<4> {
   }
 };
 
-/// The whole triangle as a slice, if it is large beside the samples' radius and its longest side is more than
-/// 32 times its height.
+/// The whole triangle as a slice, if it is large compared with the samples' radius and its longest side
+/// exceeds 32 times its height.
 inline std::optional<NeedlePiece> needle_of(const TrianglePiece& triangle, float radius) {
   constexpr double kSlender = 32;
   if (triangle.extent <= 3 * radius) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The samples that may own parts of a piece of a triangle.
+// Candidate owners of parts of a triangle's piece.
 #pragma once
 
 #include <xmmintrin.h>
@@ -15,7 +15,7 @@
 
 namespace opaline {
 
-/// A sample that may own part of a piece.
+/// A sample possibly owning part of a piece.
 struct Owner {
   static constexpr std::uint32_t kNone = ~0u;
   std::uint32_t sample = kNone;
@@ -37,15 +37,15 @@ Owner make_owner(const FlatPiece<kCorners>& piece, std::uint32_t sample, const V
   return {sample, sum, squared};
 }
 
-/// Nearer to all corners, and with that to all that lies between them.
+/// True if a is nearer to all corners, hence to all points of the piece.
 template <std::size_t kCorners>
 bool dominates(__m128 a, __m128 b) {
   constexpr int all = (1 << kCorners) - 1;
   return (_mm_movemask_ps(_mm_cmplt_ps(a, b)) & all) == all;
 }
 
-/// Removes those owners, from `first` on, that another one dominates; it is sought among the nearest to each
-/// corner and to the centre.
+/// Removes dominated owners, from `first` on; searches dominating ones among the nearest to each corner and
+/// to the centre.
 template <std::size_t kCorners>
 void remove_dominated(std::vector<Owner>& owners, std::size_t first) {
   __m128 least = owners[first].squared;
@@ -68,9 +68,8 @@ void remove_dominated(std::vector<Owner>& owners, std::size_t first) {
                owners.end());
 }
 
-/// The owners from `first` on by the sum of their squared distances, in the upper half of each value; the
-/// sample is in the lower. As integers, which order like the floats they stand for and are moved at less
-/// cost.
+/// Sorts the owners from `first` on by their sums of squared distances, as integers with the sum in the upper
+/// half and the sample in the lower: non-negative floats sort like integers, and integers move faster.
 inline void nearest_first(const std::vector<Owner>& owners, std::size_t first,
                           std::vector<std::uint64_t>& sorted) {
   sorted.clear();

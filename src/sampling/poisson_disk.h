@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples over triangles, no two of one sheet closer than a radius.
+// Poisson-disk samples on triangles, per sheet.
 #pragma once
 
 #include <tbb/parallel_sort.h>
@@ -68,15 +68,15 @@ class PoissonDisk {
   PoissonDisk(const TriangleList& triangles, const Bounds& box, float radius)
       : triangles_(triangles), radius_(radius), grid_(Vec3f(box.low), Vec3f(box.high), 2 * radius) {}
 
-  /// One round: about `count` candidates, stratified over the area; those far from all samples are tried for
-  /// real. A round of many is thrown in several, for memory's sake.
+  /// One round of about `count` candidates, stratified over the area; rejects those blocked by samples early.
+  /// Large rounds are divided, to limit memory.
   void throw_darts(std::size_t count, std::uint64_t seed, Monitor* monitor) {
     const std::size_t throws = chunk_count(count, kMostCandidates), each = chunk_count(count, throws);
     for (std::size_t i = 0; i < throws; ++i) throw_some(each, i == 0 ? seed : hash_bits(seed, i), monitor);
   }
 
-  /// The last round: the centroids of triangles with nothing near, so no part of the surface, however
-  /// small, stays without a sample.
+  /// The last round: centroids of triangles without samples nearby, so each part of the surface, however
+  /// small, has a sample.
   void cover_centroids(Monitor* monitor) {
     run_round(triangles_.size(), 2 * radius_, monitor,
               [&](std::size_t begin, std::size_t end, const auto& keep) {
@@ -123,7 +123,7 @@ class PoissonDisk {
     insert(candidates, monitor);
   }
 
-  // No accepted sample of the triangle's sheet lies within the clearance.
+  // True if no accepted sample of the triangle's sheet is within the clearance.
   bool is_clear(const Vec3f& p, std::size_t triangle, float clearance) const {
     bool clear = true;
     const auto is_blocked_in = [&](const SampleGrid::Cell& cell) {
@@ -133,7 +133,7 @@ class PoissonDisk {
       }
       return !clear;
     };
-    // Most candidates are blocked, and most of those from within their own cell.
+    // Most candidates are blocked, mostly by samples in their own cell.
     if (const SampleGrid::Cell* own = grid_.find_cell(p); own != nullptr && is_blocked_in(*own)) return false;
     grid_.for_cells_near(p, clearance, is_blocked_in);
     return clear;
@@ -178,8 +178,8 @@ class PoissonDisk {
     }
   }
 
-  // Tries one cell's candidates in order; the accepted ones move to the front of its run. Cells of one phase
-  // are two radii apart, so none sees another at work.
+  // Tries one cell's candidates in order, and moves accepted ones to the front of its run. Cells of one phase
+  // are two radii apart, hence independent.
   void try_cell(const Candidates& candidates, std::vector<CandidateEntry>& entries, std::size_t begin,
                 std::size_t end) {
     SampleGrid::Cell& own = grid_.cell(entries[begin].key());
@@ -196,7 +196,7 @@ class PoissonDisk {
         }
         return !free;
       };
-      bool free = !is_blocked_in(own);  // saves most of them the look at the cells around
+      bool free = !is_blocked_in(own);  // usually avoids searching the cells around
       if (free)
         grid_.for_cells_near(mine.position, radius_, [&](const SampleGrid::Cell& cell) {
           free = &cell == &own || !is_blocked_in(cell);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sparse grid of cells over space that finds the samples near a point.
+// Sparse grid for finding samples near a point.
 #pragma once
 
 #include <algorithm>
@@ -15,16 +15,16 @@
 
 namespace opaline {
 
-/// Cells are at least twice the Poisson radius wide: a ball of one radius meets at most eight. Blocks of 4 x
-/// 4 x 4 cells are found by a hash and hold a bit for each cell that exists: space around a surface is mostly
-/// empty. Samples lie cell by cell, along the Morton curve as far as cells were made together.
+/// Cells are at least twice the Poisson radius wide: a ball of one radius intersects at most eight. A hash
+/// table contains blocks of 4 x 4 x 4 cells, with a bit per existing cell, as most of the space around a
+/// surface is empty. Samples are stored cell by cell, in Morton order for cells created together.
 class SampleGrid {
  public:
   struct Cell {
     std::uint32_t first = 0, count = 0;              // its samples
-    std::uint32_t round_first = 0, round_count = 0;  // candidates accepted in the round under way
+    std::uint32_t round_first = 0, round_count = 0;  // candidates accepted in the current round
   };
-  struct Place {  // where on the mesh a sample is
+  struct Place {  // position of a sample on the mesh
     std::uint32_t triangle;
     float u, v;
   };
@@ -36,8 +36,8 @@ class SampleGrid {
     std::uint32_t x, y, z;
   };
 
-  /// Over the box from `low` to `high`. Cells are wider than asked for where they would be more than a
-  /// coordinate can count.
+  /// Covers the box from `low` to `high`. Cells are wider than requested if they would exceed the
+  /// coordinates' range.
   SampleGrid(const Vec3f& low, const Vec3f& high, float cell_size)
       : low_(low),
         cell_size_(std::max(cell_size, 1.001f * max_component(high - low) / float(kLast))),
@@ -56,11 +56,11 @@ class SampleGrid {
 
   /// An existing cell.
   Cell& cell(std::uint64_t key) { return cells_[find_block(key >> 6)->cells[key & 63]]; }
-  /// Makes sure that the cell exists; may move all cells.
+  /// Creates the cell if it is missing; may move all cells.
   void reserve_cell(std::uint64_t key);
 
-  /// Ends a round: takes in the candidates accepted in it. accepted(i): the sample of candidate i, for i in
-  /// each cell's [round_first, round_first + round_count).
+  /// Ends a round: adds its accepted candidates. accepted(i): the sample of candidate i, for i in each cell's
+  /// [round_first, round_first + round_count).
   template <class Accepted>
   void end_round(const Accepted& accepted) {
     std::vector<std::uint32_t> firsts(cells_.size());
@@ -69,31 +69,30 @@ class SampleGrid {
       firsts[c] = total;
       total += cells_[c].count + cells_[c].round_count;
     }
-    // One after the other: both at once would need twice their memory.
+    // Sequential, as both at once would double the memory.
     merge(positions_, firsts, total, [&](std::uint32_t i) { return accepted(i).position; });
     merge(places_, firsts, total, [&](std::uint32_t i) { return accepted(i).place; });
     for (std::size_t c = 0; c < cells_.size(); ++c)
       cells_[c] = {firsts[c], cells_[c].count + cells_[c].round_count, 0, 0};
   }
 
-  /// To be called when all cells are there and before a wide box is looked at.
+  /// Call after creating all cells, before searching a wide box.
   void finish();
 
   std::size_t size() const { return positions_.size(); }
   const Vec3f& position(std::size_t sample) const { return positions_[sample]; }
   const Place& place(std::size_t sample) const { return places_[sample]; }
-  /// All places; the grid is of no use afterwards.
+  /// Takes all places; the grid is unusable afterwards.
   std::vector<Place> take_places() { return std::move(places_); }
 
-  /// The cell that holds p; null if there is none.
+  /// The cell containing p; null if missing.
   const Cell* find_cell(const Vec3f& p) const {
     const std::uint64_t at = key(p);
     const Block* block = find_block(at >> 6);
     return block != nullptr && (block->occupied >> (at & 63) & 1) ? &cells_[block->cells[at & 63]] : nullptr;
   }
 
-  /// Calls visit(cell) for each existing cell that the ball of this radius around p meets, until one returns
-  /// true.
+  /// Calls visit(cell) for each existing cell intersecting the ball around p, until one returns true.
   template <class Visit>
   void for_cells_near(const Vec3f& p, float radius, const Visit& visit) const {
     const Vec3f place = p - low_;
@@ -104,14 +103,13 @@ class SampleGrid {
     });
   }
 
-  /// Calls visit(coordinates, cell) for each existing cell that the box meets, until one returns true.
+  /// Calls visit(coordinates, cell) for each existing cell in the box, until one returns true.
   template <class Visit>
   void for_cells_between(const Vec3f& low, const Vec3f& high, const Visit& visit) const {
     const Coordinates a = coordinates(low), b = coordinates(high);
     const std::uint64_t boxes = std::uint64_t((b.x >> 2) - (a.x >> 2) + 1) * ((b.y >> 2) - (a.y >> 2) + 1) *
                                 ((b.z >> 2) - (a.z >> 2) + 1);
-    if (!curve_.empty() &&
-        boxes > std::min(blocks_.size(), kManyBoxes)) {  // fewer blocks exist than the box meets
+    if (!curve_.empty() && boxes > std::min(blocks_.size(), kManyBoxes)) {  // fewer blocks than the box
       visit_existing(0, curve_.size(), 3 * kBlockBits, a, b, visit);
       return;
     }
@@ -123,7 +121,7 @@ class SampleGrid {
   }
 
  private:
-  // Brings an array of the samples' to the order of cells beginning at `firsts`, the accepted ones last.
+  // Sorts an array of the samples' by cells beginning at `firsts`, accepted ones last.
   template <class T, class Accepted>
   void merge(std::vector<T>& array, const std::vector<std::uint32_t>& firsts, std::size_t total,
              const Accepted& accepted) const {
@@ -140,7 +138,7 @@ class SampleGrid {
 
   static constexpr std::uint32_t kNone = ~0u;
   static constexpr std::uint32_t kLast =
-      (1u << 20) - 1;  // largest coordinate; its cells hold all beyond, too
+      (1u << 20) - 1;  // largest coordinate; its cells include everything beyond
 
   struct Block {
     std::uint64_t key, occupied;
@@ -155,8 +153,8 @@ class SampleGrid {
     std::uint32_t block;
   };
 
-  // visit_block for the blocks in this part of the curve whose cells can lie in [a, b]; true if a visit
-  // returned true. Their keys differ in the lowest `bits` bits alone.
+  // visit_block for the blocks in this part of the curve with cells possibly in [a, b]; true if a visit
+  // returned true. Their keys differ in the lowest `bits` bits only.
   template <class Visit>
   bool visit_existing(std::size_t begin, std::size_t end, int bits, const Coordinates& a,
                       const Coordinates& b, const Visit& visit) const {
@@ -188,8 +186,8 @@ class SampleGrid {
     return false;
   }
 
-  // Visits the block's cells whose coordinates lie in [a, b]; true if a visit returned true. at: the block's
-  // own coordinates, a fourth of its cells'.
+  // Visits the block's cells with coordinates in [a, b]; true if a visit returned true. at: the block's own
+  // coordinates, a fourth of its cells'.
   template <class Visit>
   bool visit_block(const Block& block, const Coordinates& at, const Coordinates& a, const Coordinates& b,
                    const Visit& visit) const {
@@ -207,7 +205,7 @@ class SampleGrid {
   // The two bits of x in a cell's six-bit Morton place within its block.
   static constexpr std::uint32_t axis_bits(std::uint32_t place) { return (place & 1) | (place >> 2 & 2); }
 
-  // Bits of a block's cells whose coordinate along an axis lies in [low, high].
+  // Mask of a block's cells with a coordinate along an axis in [low, high].
   static std::uint64_t range_mask(std::uint32_t low, std::uint32_t high, std::uint32_t block,
                                   std::uint32_t axis) {
     // By axis, first and last layer.
@@ -224,7 +222,7 @@ class SampleGrid {
     return kRanges[axis][low > 4 * block ? low - 4 * block : 0][std::min(high - 4 * block, 3u)];
   }
 
-  // Squared distance along one axis from a place to the cells of this coordinate.
+  // Squared distance along one axis from a position to the cells of this coordinate.
   float gap2_to(float place, std::uint32_t coordinate) const {
     const float low = float(coordinate) * cell_size_;
     const float above = coordinate < kLast ? place - low - cell_size_ : 0;

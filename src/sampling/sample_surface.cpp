@@ -16,18 +16,18 @@
 namespace opaline {
 namespace {
 
-// Radius over sqrt(area / count) for a sampling of 6 rounds; measured (test_density checks the count).
+// Radius over sqrt(area / count) for 6 rounds; test_density checks the resulting count.
 constexpr double kRadiusPerSpacing = 0.7195;
 
-// Samples over those asked for at which no further round is thrown; six rounds on an even surface end within
-// 3 % of what is asked for.
+// Ratio of samples to the requested number at which rounds stop. Six rounds on a smooth surface are within
+// 3 % of the number.
 constexpr double kEnough = 1.1;
 
 // The samples before they are put in order.
 struct PlacedSamples {
   std::vector<SampleGrid::Place> places;
   std::vector<SurfaceShare> shares;
-  std::vector<SurfacePiece> pieces;  // if asked for
+  std::vector<SurfacePiece> pieces;  // on request
 };
 
 PlacedSamples place_samples(const SamplingInput& input, const TriangleList& triangles, float radius,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The surface cut into tasks of about the same work.
+// Division of the surface into tasks of similar work.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ inline TrianglePiece whole_piece(const TriangleList& triangles, std::size_t tria
   return {t.a, t.b, t.c};
 }
 
-/// Some triangles, or a part of one: about as much work as any other task.
+/// Some triangles, or a part of one.
 struct Task {
   std::size_t first, last;
   std::optional<TrianglePiece> part = {};  ///< part of the triangle `first`
@@ -24,7 +24,7 @@ struct Task {
   bool is_whole() const { return !part && !slice; }
 };
 
-/// Cuts the surface into tasks, by area in units of a mean share and by triangles.
+/// Divides the surface into tasks, by area in units of a mean cell and by triangles.
 class Tasks {
  public:
   Tasks(const TriangleList& triangles, double mean_share, float radius) : mean_share_(mean_share) {

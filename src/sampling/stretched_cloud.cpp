@@ -40,7 +40,7 @@ Box box_of(const TriangleList& triangles) {
   return box;
 }
 
-/// Samples one after the other, found by cells as wide as the distance asked for.
+/// Samples by cells as wide as the search distance.
 class GrowingCloud {
  public:
   GrowingCloud(const Vec3f& low, float distance) : low_(low), distance_(distance) {}
@@ -76,8 +76,8 @@ class GrowingCloud {
   std::unordered_map<std::uint64_t, std::vector<Standing>> cells_;
 };
 
-/// Places in cells a little over twice as wide as a distance: whoever is closer than it to a place is in one
-/// of the eight cells around the corner that is nearest to the place.
+/// Positions in cells a little over twice as wide as a distance: everything within the distance is in one of
+/// the eight cells around the nearest corner.
 class CloseCells {
  public:
   CloseCells(std::span<const Standing> standing, float distance)
@@ -90,11 +90,11 @@ class CloseCells {
     for (const Standing& s : standing) low_ = component_min(low_, s.position);
   }
 
-  /// True if any place before the i-th is close to it and of its sheet; to be asked of each in turn.
+  /// True if any earlier position is close to the i-th and on its sheet; call in order.
   bool is_close(std::uint32_t i) {
-    constexpr float kLast = 0x1p20f;  // cells beyond are one, which is only slower
+    constexpr float kLast = 0x1p20f;  // cells beyond share one, which is only slower
     const Vec3f c = component_min((standing_[i].position - low_) * scale_, Vec3f(kLast)) + Vec3f(1);
-    std::array<std::array<std::uint64_t, 2>, 3> near;  // its cell's coordinate and the other one, shifted
+    std::array<std::array<std::uint64_t, 2>, 3> near;  // coordinates of its cell and neighbour, shifted
     for (std::size_t k = 0; k < 3; ++k) {
       const auto own = std::uint64_t(c[k]);
       near[k] = {own << 21 * k, (c[k] - float(own) < 0.5f ? own - 1 : own + 1) << 21 * k};
@@ -125,7 +125,7 @@ class CloseCells {
       slot = (slot + 1) & (entries_.size() - 1);
     return slot;
   }
-  // Most cells asked for are empty, and a bit for each that is not stays in the nearest memory.
+  // Most cells are empty; a bit filter for existing ones fits into the cache.
   std::size_t bit_of(std::uint64_t key) const {
     return std::size_t((key * 0xD6E8FEB86659FD93ull) >> 30) & (64 * seen_.size() - 1);
   }
@@ -143,7 +143,7 @@ class CloseCells {
   float distance2_, scale_;
   Vec3f low_{INFINITY};
   std::vector<Entry> entries_;       // a power of two of them
-  std::vector<std::uint64_t> seen_;  // eight bits an entry
+  std::vector<std::uint64_t> seen_;  // eight bits per entry
   std::vector<std::uint32_t> older_;
 };
 
@@ -163,7 +163,7 @@ bool any_closer(std::span<const Standing> standing, float distance) {
 std::size_t StretchedCloud::remove_crowded(float radii) {
   const std::vector<Standing> standing = standing_on(after_, places_);
   if (!any_closer(standing, radii * radius_)) return 0;
-  // Who stays is drawn by lot, the same one in every frame.
+  // Random choice of the remaining samples, equal in every frame.
   std::vector<std::pair<std::uint64_t, std::uint32_t>> lots(places_.size());
   for (std::uint32_t i = 0; i < lots.size(); ++i) {
     const SampleGrid::Place& p = places_[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples on a surface that changed its shape: too many in one place, too few in another.
+// Samples on a deformed surface: removal where too dense, addition where too sparse.
 #pragma once
 
 #include <span>
@@ -10,29 +10,29 @@
 
 namespace opaline {
 
-/// A triangle whose area is more than this factor of what it was may hold gaps; a gap between samples that
-/// was as wide before is no matter of stretch.
+/// Least growth of a triangle's area for gaps between its samples; smaller ones had gaps as wide before.
 inline constexpr double kGrown = 1.2 * 1.2;
 
-/// A place on a surface and the geometric normal there.
+/// A point of a surface and its geometric normal.
 struct Standing {
   Vec3f position, normal;
 };
 
-/// True if any two of one sheet are closer than this, mm.
+/// True if any two samples of one sheet are closer than this, mm.
 bool any_closer(std::span<const Standing> standing, float distance);
 
 class StretchedCloud {
  public:
-  /// before, after: the same triangles; radius: no two samples of one sheet were closer before.
+  /// before, after: the same triangles; radius: minimum distance of samples of one sheet before.
   StretchedCloud(const TriangleList& before, const TriangleList& after, float radius,
                  std::vector<SampleGrid::Place> places);
 
-  /// Removes samples until none of one sheet are closer than this many radii; how many.
+  /// Removes samples until none of one sheet are closer than this many radii; returns their number.
   std::size_t remove_crowded(float radii);
-  /// Adds samples where, on a triangle that grew, nothing of its sheet is within this many radii; how many.
+  /// Adds samples on triangles that grew, at points without samples of their sheet within this many radii;
+  /// returns their number.
   std::size_t fill_gaps(float radii);
-  /// The samples as they are now.
+  /// The current samples.
   SampleGrid grid() const;
 
  private:

@@ -12,7 +12,7 @@
 namespace opaline {
 namespace {
 
-/// Barycentrics of places in a triangle's plane.
+/// Barycentrics of points in a triangle's plane.
 class Barycentrics {
  public:
   explicit Barycentrics(const TriangleList::Corners& t) : origin_(t.a) {
@@ -28,10 +28,10 @@ class Barycentrics {
   Vec3d origin_, along_u_, along_v_;
 };
 
-/// Sums the shares of each sample, in place; how many samples there are.
+/// Sums the contributions of each sample, in place; returns the number of samples.
 std::size_t merge_by_sample(std::span<Share> shares) {
   constexpr std::size_t kFew = 64;
-  const bool sorted = shares.size() > kFew;  // then a sample's are neighbours
+  const bool sorted = shares.size() > kFew;  // a sample's contributions are adjacent
   if (sorted) std::ranges::stable_sort(shares, {}, &Share::sample);
   std::size_t count = 0;
   for (const Share& share : shares) {
@@ -47,7 +47,7 @@ std::size_t merge_by_sample(std::span<Share> shares) {
   return count;
 }
 
-/// The pieces of one triangle, whose shares are used up.
+/// Pieces of one triangle; consumes its contributions.
 void add_pieces(const TriangleList& triangles, const SampleGrid& grid, std::span<Share> shares,
                 std::vector<SurfacePiece>& pieces) {
   if (shares.empty()) return;
@@ -63,11 +63,11 @@ void add_pieces(const TriangleList& triangles, const SampleGrid& grid, std::span
 
 struct TaskResult {
   std::vector<Share> shares;
-  std::vector<SurfacePiece> pieces;  // if they are kept
+  std::vector<SurfacePiece> pieces;  // if requested
 };
 
-/// Divides a task's triangles. However many needles meet the same samples, its shares stay few: they are
-/// summed by sample now and then, at numbers that even triangles do not reach.
+/// Divides a task's triangles. Sums contributions by sample regularly, at counts not reached by ordinary
+/// triangles, so needles meeting the same samples do not accumulate many.
 void divide_task(const TriangleList& triangles, const SampleGrid& grid, float radius, const Task& task,
                  Monitor* monitor, bool keep, TaskResult& result) {
   constexpr std::size_t kMany = 8192;
@@ -95,7 +95,8 @@ std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const Sa
                                          Monitor* monitor, std::vector<SurfacePiece>* kept) {
   std::vector<SurfaceShare> shares(grid.size());
   const Tasks tasks(triangles, triangles.area() / double(grid.size()), radius);
-  // Blocks bound the memory of the shares; within one, tasks are summed in order, whatever the threads.
+  // Blocks bound the memory of the contributions; within one, tasks are summed in order, independent of
+  // threads.
   constexpr std::size_t kBlock = 256;
   std::vector<TaskResult> results(std::min(kBlock, tasks.all().size()));
   for (std::size_t begin = 0; begin < tasks.all().size(); begin += kBlock) {

@@ -11,22 +11,22 @@
 
 namespace opaline {
 
-/// The part of the surface that is nearer to a sample than to any other sample of the same sheet.
+/// Surface nearer to a sample than to any other sample of the same sheet.
 struct SurfaceShare {
   double area = 0;  ///< mm^2
   Vec3d moment{};   ///< integral over it of the position relative to the sample, mm^3: area x offset of the
                     ///< centroid
 };
 
-/// Part of a triangle belonging to a sample, or of a part of it with a task of its own.
+/// Part of a triangle, or of a task's part of one, belonging to a sample.
 struct SurfacePiece {
   std::uint32_t triangle, sample;  ///< in the list, in the grid
   float share, u, v;               ///< as in CellPart
 };
 
-/// Each sample's share, in the grid's order. Triangles are halved until they are no larger than the spacing
-/// and then clipped by the bisecting planes: the cells are exact and sum to the surface's area.
-/// out   pieces: unless null, what they are made of
+/// Area of each sample's Voronoi cell, in the grid's order. Halves triangles down to the spacing and clips
+/// them by the bisecting planes: the cells are exact and sum to the surface's area.
+/// out   pieces: null, or receives their parts
 std::vector<SurfaceShare> surface_shares(const TriangleList& triangles, const SampleGrid& grid, float radius,
                                          Monitor* monitor, std::vector<SurfacePiece>* pieces = nullptr);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A triangle cut into the parts that each sample owns of it.
+// Division of a triangle into the parts owned by each sample.
 #pragma once
 
 #include <cstdint>
@@ -50,18 +50,18 @@ class TriangleDivider {
   }
 
  private:
-  // Down to a few spacings, where the owners are looked up once for all the smaller pieces.
+  // Recursion down to a few spacings, with one owner search for all smaller pieces.
   void divide_large(const TrianglePiece& piece) {
     if (piece.extent > piece_extent_) {
       for (const TrianglePiece& half : piece.halves()) divide_large(half);
       return;
     }
-    advance(monitor_, 0);  // one large triangle can be a minute's work
+    advance(monitor_, 0);  // one large triangle can take a minute
     find_owners(piece, kAll);
     divide_small(piece, 0);
   }
 
-  // A needle's samples may be far apart or crowded: it is sliced until a slice meets few of them.
+  // A needle's samples may be far apart or crowded: it is sliced until a slice has few of them.
   void divide_needle(const NeedlePiece& piece) {
     if (!find_owners(piece, piece.extent > few_spacings() ? kFewOwners : kAll)) {
       for (const NeedlePiece& half : piece.halves()) divide_needle(half);
@@ -71,7 +71,7 @@ class TriangleDivider {
     divide_small(piece, 0);
   }
 
-  // The owners of this piece stand at the end of owners_, from `first` on.
+  // The owners of this piece are at the end of owners_, from `first` on.
   template <class Piece>
   void divide_small(const Piece& piece, std::size_t first) {
     const std::size_t count = owners_.size() - first;
@@ -93,12 +93,12 @@ class TriangleDivider {
     }
   }
 
-  // All samples that can be nearest to some point of the piece, and few more: those that no other dominates.
-  // False, with some of them left out, if more than `most` samples are looked at.
+  // Finds all samples nearest to some point of the piece, and few more: the undominated ones. Returns false,
+  // with an incomplete result, after examining more than `most` samples.
   template <class Piece>
   bool find_owners(const Piece& piece, std::size_t most) {
     const Owner near = some_near(piece);
-    // Whoever owns a part is nearer than that one to at least one of the corners.
+    // An owner of a part is nearer than that one to at least one of the corners.
     const auto [low, high] = piece.box_around(near.squared);
     owners_.clear();
     std::size_t seen = 0;
@@ -117,8 +117,8 @@ class TriangleDivider {
     return true;
   }
 
-  // A sample of the triangle's sheet: from the cell of the piece's centre, or else the nearest within a reach
-  // that grows. A sheet without any sample near falls to the other sheets'.
+  // A nearby sample of the triangle's sheet: from the cell of the piece's centre, or the nearest within a
+  // growing reach. A sheet without nearby samples is assigned to other sheets' samples.
   template <class Piece>
   Owner some_near(const Piece& piece) {
     any_sheet_ = false;
@@ -166,7 +166,7 @@ class TriangleDivider {
       for (const Site& other : sites_) {
         if (&other == &site) continue;
         const double nx = other.place.x - site.place.x, ny = other.place.y - site.place.y;
-        // Coincident samples: the first takes all.
+        // Coincident samples: the first owns everything.
         if (nx == 0 && ny == 0 && other.power == site.power && other.sample < site.sample) polygon_.clear();
         polygon_.clip(nx, ny, 0.5 * (other.power - site.power));
         if (polygon_.empty()) break;
@@ -177,7 +177,7 @@ class TriangleDivider {
     }
   }
 
-  // Where the owners are looked up once for all the smaller pieces.
+  // Size of pieces with one owner search for all smaller ones.
   float few_spacings() const { return 3 * radius_; }
 
   static constexpr std::size_t kClippedOwners = 16;

@@ -22,7 +22,7 @@ struct Keyed {
   TriangleId id;
 };
 
-/// Returns whether two triangles have the same corners in the same cyclic order.
+/// True if two triangles have the same corners in the same cyclic order.
 bool coincide(const TriangleList::Corners& s, const TriangleList::Corners& t) {
   const std::array<Vec3d, 3> b{t.a, t.b, t.c};
   for (std::size_t k = 0; k < 3; ++k)
@@ -30,7 +30,7 @@ bool coincide(const TriangleList::Corners& s, const TriangleList::Corners& t) {
   return false;
 }
 
-/// Leaves out triangles that coincide with one of another mesh before them.
+/// Drops triangles coinciding with one of an earlier mesh.
 void drop_coincident(std::vector<Keyed>& keyed, const TriangleList& triangles) {
   constexpr std::size_t kCompared = 64;  // maximum number of compared triangles per key
   std::vector<std::size_t> kept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The triangles of several meshes as one list with cumulative areas.
+// Triangles of several meshes as one list with cumulative areas.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@ struct TriangleId {
   std::uint32_t mesh, triangle;
 };
 
-/// Along the Morton curve of their centres: neighbours in the list are neighbours in space, whatever the
-/// order of the file, and what was just read serves again.
+/// Sorted along the Morton curve of their centres: neighbours in the list are neighbours in space,
+/// independent of the file's order, for the cache.
 class TriangleList {
  public:
-  /// Takes one of the triangles of different meshes that coincide and face the same way.
+  /// Keeps one of several coincident triangles of different meshes with the same orientation.
   TriangleList(const World& world, std::span<const std::uint32_t> meshes);
-  /// The same triangles of meshes that were `before` and have moved or bent since, in its order.
+  /// The triangles of `before` in the same order, after the meshes have moved or deformed.
   TriangleList(const World& world, std::span<const std::uint32_t> meshes, const TriangleList& before,
                std::span<const std::uint32_t> meshes_before);
 
@@ -33,7 +33,7 @@ class TriangleList {
   /// Area of the triangles up to and including this one.
   double cumulative(std::size_t index) const { return cumulative_[index]; }
   const Vec3f& geometric_normal(std::size_t index) const { return normals_[index]; }
-  /// The triangle in which the cumulative area passes the given one.
+  /// Triangle containing the given cumulative area.
   std::size_t find(double area) const {
     const auto it = std::upper_bound(cumulative_.begin(), cumulative_.end(), area);
     return std::min<std::size_t>(std::size_t(it - cumulative_.begin()), size() - 1);

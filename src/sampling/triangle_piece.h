@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A triangle or a part of one that is a triangle again.
+// A triangle or a triangular part of one.
 #pragma once
 
 #include "sampling/flat_piece.h"

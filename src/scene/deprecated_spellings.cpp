@@ -16,7 +16,7 @@ struct OldSpelling {
   std::string_view old, now;
 };
 
-// Values of "profile" that are now "normalized_diffusion" and this "fit".
+// Old values of "profile", now "normalized_diffusion" with this "fit".
 constexpr OldSpelling kFits[] = {{"normalized_diffusion_searchlight", "searchlight"},
                                  {"normalized_diffusion_dmfp", "dmfp"},
                                  {"normalized_diffusion_refit", "refit"}};

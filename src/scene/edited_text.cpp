@@ -29,7 +29,7 @@ bool is_blank(std::string_view text) {
   return text.find_first_not_of(" \t\r") == std::string_view::npos;
 }
 
-/// Members at the end of an object that has others. A comment behind the last of those stays with it.
+/// Appends members to a nonempty object. A comment after the last member stays with it.
 void append_members(std::string_view text, const Node& object, const std::vector<const Node*>& added,
                     std::vector<Replacement>& changes) {
   const Node& last = object.children.back();

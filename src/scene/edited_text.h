@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene's text with some of its values changed: all else stays as a person wrote it, comments too.
+// Minimal edits of a scene's text, keeping layout and comments.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace opaline {
 
-/// The text, changed where two trees differ. Values are replaced where they stand; new members of an object come after
-/// its others. An object that lost members, and a list of another length, is written anew, without the comments in it.
-/// in    before: of the text; now: what the new text is to be read as
+/// The text with the differences of two trees. Values are replaced in place; new members of an object are
+/// appended. Objects with removed members and lists of another length are rewritten, without their comments.
+/// in    before: tree of the text; now: tree of the result
 std::string edited_text(std::string_view text, const Node& before, const Node& now);
 
 }  // namespace opaline

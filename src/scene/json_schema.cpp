@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of keys as a JSON Schema.
+// JSON Schema of the table of keys.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ std::string section_below(const KeyInfo& info) {
   return {};
 }
 
-/// Schemas of the values that a key takes.
+/// Schemas of a key's values.
 std::vector<Json> plain_values(const KeyInfo& info) {
   switch (info.type) {
     case ValueType::number:

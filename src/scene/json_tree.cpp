@@ -9,15 +9,15 @@
 namespace opaline {
 namespace {
 
-/// Follows the parser through the text. nlohmann-json 3.11 reports no positions, but it reports every value
-/// and key in order, and between two of them only blanks, comments, commas and colons can stand.
+/// Tracks the parser's position in the text. nlohmann-json 3.11 reports no positions, but all values and keys
+/// in order, with only blanks, comments, commas and colons between them.
 class TokenCursor {
  public:
   explicit TokenCursor(std::string_view text) : text_(text) {
     if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
   }
 
-  /// Start of the next token; the cursor moves behind it.
+  /// Start of the next token; advances the cursor past it.
   std::size_t next() {
     skip_between();
     const std::size_t start = at_;
@@ -77,7 +77,7 @@ bool begins_with_word(std::string_view text, std::string_view word) {
   return true;
 }
 
-/// Names what JSON expects in place of a number as other languages write it; empty: it is none.
+/// Describes the JSON form of a number written as in another language; empty: it is none.
 std::string expected_number(std::string_view text, std::size_t offset) {
   const std::string_view rest = text.substr(std::min(offset, text.size()));
   const char before = offset > 0 && offset <= text.size() ? text[offset - 1] : ' ';
@@ -90,7 +90,7 @@ std::string expected_number(std::string_view text, std::size_t offset) {
   return is_number ? "a finite number" : "";
 }
 
-/// Names what JSON expects where other languages write something else; empty where the mistake is no usual one.
+/// Describes the JSON form of another language's syntax; empty if the mistake is not a common one.
 std::string expected_for_usual_mistake(std::string_view text, std::size_t offset) {
   const std::string_view rest = text.substr(std::min(offset, text.size()));
   if (rest.starts_with("'")) return "double quotes";
@@ -145,7 +145,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
                    const nlohmann::json::exception& exception) override {
     if (exception.id == 406) fail_too_large();
     // "[json...] parse error at line 1, column 2: syntax error while parsing value - invalid literal; last
-    // read: '...'": what the file holds stays out of the message, it may be binary.
+    // read: '...'": omits the file's contents, which may be binary.
     std::string reason = exception.what();
     const std::size_t begin = reason.find("while parsing ");
     reason = begin == std::string::npos ? "broken" : reason.substr(begin);
@@ -163,14 +163,14 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  /// Where the parser stumbled. `position` counts the bytes it has read, the last of an unexpected token or
-  /// the one that no token can hold included.
+  /// Offset of a syntax error. `position` counts the bytes read, including the last of an unexpected token or
+  /// an invalid byte.
   std::size_t offset_of_break(std::size_t position, bool unexpected_token) {
     const std::size_t start = std::min(position > 0 ? position - 1 : 0, text_.size());
     if (!unexpected_token) return start;
     std::size_t token = cursor_.next();
     while (cursor_.end() < position && cursor_.end() < text_.size()) token = cursor_.next();
-    return std::min(start, token);  // a comma or colon is no token to the cursor
+    return std::min(start, token);  // commas and colons are not tokens of the cursor
   }
 
   /// The path to the value coming next.
@@ -239,7 +239,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   std::string_view text_;
   int override_index_;
   TokenCursor cursor_;
-  // A parent's children only grow while the last of them is closed, so the pointers stay good.
+  // A parent's children only grow after the last of them is closed, so the pointers stay valid.
   std::vector<Node*> open_;
   std::vector<std::unordered_map<std::string, std::size_t>> keys_;
   std::string key_;

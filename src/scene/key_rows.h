@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of the table of keys (opaline/scene/schema.h), as the files that have them write them.
+// Rows of the table of keys (opaline/scene/schema.h), by the files defining them.
 #pragma once
 
 #include <span>

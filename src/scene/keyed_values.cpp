@@ -52,7 +52,7 @@ class KeyedValue {
   }
 
  private:
-  /// Where there is a frame between two keys, it has a value.
+  /// A frame between two keys has a value.
   void check_between() const {
     for (std::size_t i = 1; i < keys_.size(); ++i)
       if (keys_[i].frame - keys_[i - 1].frame > 1) {
@@ -171,7 +171,7 @@ std::size_t count_camera_frames(const Document& document) {
 
 void resolve_keyed_values(Document& document) {
   for (Node& part : document.root.children)
-    if (part.key == "media")  // whose names are the user's: one may be "keyed"
+    if (part.key == "media")  // may contain a medium named "keyed"
       for (Node& medium : part.children) resolve(document, medium);
     else
       resolve(document, part);

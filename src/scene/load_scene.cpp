@@ -31,7 +31,7 @@ std::string read_text(const std::string& path) {
   return file.read_all();
 }
 
-/// An image, or a format that is not read.
+/// Rejects images, and unsupported formats.
 void check_is_no_other_file(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   for (const char* picture : {".png", ".exr", ".hdr", ".jpg", ".jpeg", ".tif"})
@@ -41,7 +41,7 @@ void check_is_no_other_file(const std::string& path) {
   if (const std::string unread = unread_format(path); !unread.empty()) throw bad_file(path, unread);
 }
 
-/// Assets are told by their names; under another one they end here.
+/// Assets are recognised by their extension.
 void check_begins_as_scene(const std::string& path, const std::string& text) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     throw bad_file(path, "is UTF-16", "a scene file in UTF-8");
@@ -69,7 +69,7 @@ std::vector<T> read_named(const std::optional<Value>& list, const std::string& d
   return records;
 }
 
-/// A light for each channel of a coloured picture: what arrives from a light is one number.
+/// Splits coloured environment maps into a light per channel, as irradiance is one number per light.
 std::vector<Light> by_channel(const std::vector<Light>& lights) {
   std::vector<Light> split;
   for (const Light& light : lights) {
@@ -92,8 +92,8 @@ void read_surroundings(const Value& value, std::vector<Light>& lights) {
   if (radiance != Rgb{}) lights.push_back({"surroundings", Surroundings{radiance}, value.place()});
 }
 
-/// A few balls are as round as float vertices make them. More have a quarter of the triangles each, and .02 % less area;
-/// hundreds share the memory of one hundred.
+/// Distributes triangles over spheres. A few have the maximum, limited by the precision of float vertices.
+/// More have a quarter each, with 0.02 % less area; hundreds share the memory of one hundred.
 void share_triangles(std::vector<Shape>& shapes) {
   constexpr double kMostTriangles = 8e6, kFinestTriangles = 81920, kFewBalls = 6;
   const auto for_each_curved = [&](const auto& use) {
@@ -114,7 +114,7 @@ void share_triangles(std::vector<Shape>& shapes) {
   for_each_curved([&](int& of_shape) { of_shape = fineness; });
 }
 
-/// A multipole medium without a thickness of its own has that of the built-in plates made of it.
+/// A multipole medium without a thickness has that of the built-in plates made of it.
 /// error if they differ
 void take_thickness_of_plates(Scene& scene) {
   std::vector<bool> is_declared;
@@ -181,7 +181,7 @@ std::vector<std::string> texture_warnings(const Scene& scene) {
   return {warnings.begin(), warnings.end()};
 }
 
-/// The lines of a text that the user has not seen would mislead.
+/// Removes line numbers of a generated text, unknown to the user.
 void forget_places(Scene& scene) {
   const auto forget = [&](auto& records) {
     for (auto& record : records)
@@ -192,7 +192,7 @@ void forget_places(Scene& scene) {
   forget(scene.lights);
 }
 
-/// error without a line and column of the text, which the user has not seen
+/// error without line and column, as the text is generated
 Scene parse_asset(const std::string& text, const std::string& path, std::span<const std::string> overrides,
                   int frame) {
   try {

@@ -46,7 +46,7 @@ struct OtherWord {
   std::array<std::string_view, 7> own = {};
 };
 
-// Words of other programs for keys and choices.
+// Other programs' names of keys and choices.
 constexpr OtherWord kOtherWords[] = {
     {"absorption", {"sigma_a"}},
     {"albedo", {"subsurface_color", "base_color", "reflectance"}},
@@ -107,7 +107,7 @@ constexpr OtherWord kOtherWords[] = {
     {"world", {"surroundings"}},
 };
 
-/// The candidates that another program calls so.
+/// Candidates with this name in another program.
 Names named_otherwise(std::string_view name, std::span<const std::string_view> candidates) {
   Names found;
   for (const auto& [word, own] : kOtherWords)
@@ -116,9 +116,9 @@ Names named_otherwise(std::string_view name, std::span<const std::string_view> c
   return found;
 }
 
-/// The one candidate that is spelt almost alike, or none.
+/// The one candidate of similar spelling, or none.
 Names nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
-  constexpr std::size_t longest = 64;  // a name may be megabytes long; then nothing is near it
+  constexpr std::size_t longest = 64;  // longer names, possibly megabytes, match nothing
   Names nearest;
   std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
   for (const std::string_view candidate : candidates) {
@@ -132,7 +132,7 @@ Names nearest_name(std::string_view name, std::span<const std::string_view> cand
   return nearest;
 }
 
-/// The candidates ending with this word, `specular_roughness` for `roughness`, unless they are many.
+/// Candidates ending with this word, `specular_roughness` for `roughness`, unless there are many.
 Names longer_names(std::string_view name, std::span<const std::string_view> candidates) {
   constexpr std::size_t most = 3;
   Names found;
@@ -147,11 +147,11 @@ Names similar_names(std::string_view name, std::span<const std::string_view> can
   return {};
 }
 
-/// The sections standing once in a scene, so their keys have one path.
+/// Sections occurring once in a scene, so their keys have one path.
 constexpr std::array<std::string_view, 4> kSingleSections{"camera", "film", "settings",
                                                           "settings.laboratory"};
 
-/// Paths of the keys that are called like this, there or by another program.
+/// Paths of the keys with this name, or with it in another program.
 Names paths_of(std::string_view key) {
   Names paths;
   for (const std::string_view section : kSingleSections) {
@@ -163,7 +163,7 @@ Names paths_of(std::string_view key) {
   return paths;
 }
 
-/// The path of a key that is spelt almost alike, or none.
+/// The path of a key of similar spelling, or none.
 Names nearest_path(std::string_view key) {
   for (const std::string_view section : kSingleSections)
     for (const std::string& name : nearest_name(key, section_keys(section)))
@@ -171,7 +171,7 @@ Names nearest_path(std::string_view key) {
   return {};
 }
 
-/// Paths of the keys of media and shapes that a name at the scene's top may mean.
+/// Paths of keys of media and shapes matching a name at the top level.
 Names paths_in_lists(std::string_view key) {
   for (const auto& [section, list] :
        {std::pair("medium", "media.NAME."), std::pair("shape", "shapes.NAME.")}) {
@@ -192,7 +192,7 @@ std::string did_you_mean(std::string_view name, std::span<const std::string_view
 
 std::string did_you_mean_key(std::string_view name, std::string_view section) {
   const std::span<const std::string_view> keys = section_keys(section);
-  // Keys of a shape, a light or a medium are not mixed up with the others: only their names are alike.
+  // Keys of shapes, lights and media have similar names, but are not confused with others.
   const bool may_be_elsewhere =
       section == "scene" || std::ranges::find(kSingleSections, section) != kSingleSections.end();
   if (!may_be_elsewhere) return did_you_mean(name, keys);
@@ -207,7 +207,7 @@ std::vector<std::string> similar_key_paths(std::string_view name) {
 }
 
 std::string did_you_mean_file(const std::string& path) {
-  constexpr std::size_t most = 10000;  // files of a folder; in a larger one nothing is looked for
+  constexpr std::size_t most = 10000;  // maximum files of a searched folder
   const std::filesystem::path given(path), folder = given.parent_path();
   std::vector<std::string> names;
   std::error_code failure;
@@ -219,7 +219,7 @@ std::string did_you_mean_file(const std::string& path) {
   std::ranges::sort(names);  // folders list their files in no order
   const std::vector<std::string_view> views(names.begin(), names.end());
   const Names near = nearest_name(given.filename().string(), views);
-  // The project's own scenes have a script beside them that fetches their assets.
+  // The example scenes have a script that fetches their assets.
   const std::filesystem::path script = folder.parent_path() / "gallery";
   if (near.empty() && folder.filename() == "assets" && std::filesystem::is_regular_file(script, failure))
     return " (" + printable(script.string()) + " downloads the assets of these scenes)";

@@ -20,7 +20,7 @@ std::string element_name(const Node& list, std::size_t i) {
   return list.key.substr(0, list.key.size() - list.key.ends_with('s')) + std::to_string(i);
 }
 
-/// ".5" and "-.5" as JSON has them; empty for anything else.
+/// ".5" and "-.5" with a leading zero, as in JSON; empty for anything else.
 std::string with_leading_zero(std::string_view value) {
   if (value.starts_with('.')) return '0' + std::string(value);
   if (value.starts_with("-.")) return "-0" + std::string(value.substr(1));
@@ -40,7 +40,7 @@ std::string with_leading_zeros(std::string_view value) {
   return text.size() > value.size() ? text : std::string();
 }
 
-/// True for what is meant as a list or an object, whether it is one or not.
+/// True for an intended list or object, valid or not.
 bool is_bracketed(std::string_view value) {
   return (value.starts_with('[') && value.ends_with(']')) || (value.starts_with('{') && value.ends_with('}'));
 }
@@ -94,7 +94,7 @@ class Override {
     return text_.find('=');
   }
 
-  /// A name with points in it is one of the node's children, or stands in quotes.
+  /// A name containing dots is one of the node's children, or quoted.
   PathName next_name(std::string_view path, std::size_t begin, const Node& node) const {
     const std::string_view rest = path.substr(begin);
     if (rest.starts_with('"') || rest.starts_with('\'')) {
@@ -114,7 +114,7 @@ class Override {
     return {rest.substr(0, length), begin + length};
   }
 
-  /// The child of `parent` at this step of the path, created if it is a missing key.
+  /// Child of `parent` at this step of the path, created if missing.
   Node& step(Node& parent, std::string_view name, std::string_view so_far) const {
     if (name == "texture" && is_plain_value(parent)) make_object(parent);
     if (parent.kind == Node::Kind::array) return element(parent, name, so_far);
@@ -130,7 +130,7 @@ class Override {
     return child;
   }
 
-  /// A colour or a number, whose place a texture may take.
+  /// True for a colour or a number, replaceable by a texture.
   static bool is_plain_value(const Node& node) {
     const auto is_number = [](const Node& n) { return n.kind == Node::Kind::number; };
     const bool is_triple = node.kind == Node::Kind::array && std::ranges::all_of(node.children, is_number);
@@ -160,7 +160,7 @@ class Override {
          names.empty() ? "none: it is empty" : "an index below " + std::to_string(names.size()));
   }
 
-  /// No shape or light is called so.
+  /// No shape or light has this name.
   [[noreturn]] void fail_name(std::string_view name, std::string_view kind,
                               const std::vector<std::string>& names) const {
     constexpr std::size_t most = 8;
@@ -210,11 +210,10 @@ bool has_shape_of(const Node& scene, std::string_view medium) {
          });
 }
 
-/// The names of media are the user's, so a mistyped one makes a new medium. One that no shape is made of and
-/// that is called almost as one of the file's was meant to be that.
+/// Rejects a new medium used by no shape, with a name similar to an existing one: a likely misspelling.
 void check_new_media(const Document& document, const std::set<std::string>& names) {
   const Node* media = find_member(document.root, "media");
-  if (media == nullptr || media->override_index >= 0) return;  // as a whole from the command line
+  if (media == nullptr || media->override_index >= 0) return;  // the whole list is from the command line
   const std::vector<std::string_view> views(names.begin(), names.end());
   for (const Node& medium : media->children) {
     if (medium.override_index < 0 || names.contains(medium.key)) continue;
@@ -225,7 +224,7 @@ void check_new_media(const Document& document, const std::set<std::string>& name
   }
 }
 
-/// A shape that the command line makes translucent is no longer opaque as the file has it, and the other way round.
+/// Removes the opaque surface of a shape made translucent on the command line, and vice versa.
 void drop_replaced_surface(Node& shape) {
   const auto is_given = [&](std::string_view key) {
     const Node* member = find_member(shape, key);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measured media, ready to use by name.
+// Measured media by name.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ struct Preset {
 
 /// The twelve materials of Jensen et al. 2001, A Practical Model for Subsurface Light Transport, figure 5.
 std::span<const Preset> presets();
-/// Their names, in that order.
+/// Their names, in the same order.
 std::span<const std::string_view> preset_names();
 
 }  // namespace opaline

@@ -5,7 +5,7 @@
 namespace opaline {
 namespace {
 
-/// The light's type, which decides what other keys it may have.
+/// The light's type, deciding its other keys.
 std::string_view type_of(const Value& value) {
   const KeyInfo& info = key_info("light.point", "type");
   if (const std::optional<Value> type = value.member("type", info)) return info.choices[type->choice()];

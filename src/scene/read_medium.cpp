@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-/// A way to say what the medium is: the key that decides for it, and those that go with it.
+/// One way to define a medium: its decisive key, and the accompanying keys.
 struct Form {
   std::string_view decisive;
   std::vector<std::string_view> companions;
@@ -26,7 +26,7 @@ const std::vector<Form>& forms() {
   return table;
 }
 
-/// The decisive key of the medium's form. error if there is none, several, or a key of another form beside it
+/// Decisive key of the medium's form. error if there is none, several, or a key of another form beside it
 std::string_view form_of(const ObjectReader& medium) {
   const std::string ways =
       "preset, sigma_a + sigma_s_prime, sigma_a + sigma_s (+ g), or subsurface_color + subsurface_radius";
@@ -64,7 +64,7 @@ PhysicalMedium read_physical(const ObjectReader& medium) {
   return result;
 }
 
-/// The texture's mean, over which its texels are from now on.
+/// Returns the texture's mean and normalises its texels by it.
 Rgb take_mean(Texture& texture) {
   const Texel mean = texture.file->mean();
   Rgb taken;
@@ -76,7 +76,7 @@ Rgb take_mean(Texture& texture) {
   return taken;
 }
 
-/// Take color of a texture the medium is that of the mean colour, and what its texels are over it a tint.
+/// Uses the mean colour of a texture for the medium, and the relative texels as a tint.
 void take_color(const Value& value, ArtistMedium& coefficients, Medium& medium) {
   ColorReading color = read_color(value);
   coefficients.subsurface_color = color.color;

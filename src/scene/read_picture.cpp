@@ -18,7 +18,7 @@ Owner read_members(const Value& value, std::string_view section, std::span<const
   return owner;
 }
 
-/// A cropped picture may be as large as it likes.
+/// Cropped images have no size limit.
 void check_pixels(const Film& film, const Value& value) {
   const std::array<int, 4> part =
       film.crop.value_or(std::array<int, 4>{0, 0, film.resolution[0], film.resolution[1]});

@@ -59,7 +59,7 @@ TorusShape read_torus(const ObjectReader& reader, double mm_per_unit) {
   return {read_center(reader, mm_per_unit), major, minor};
 }
 
-/// place: set to that of the source.
+/// place: set to the source's position in the file.
 ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, SourcePlace& place) {
   const std::string_view kind = shape.exactly_one_of(source_names);
   place = shape.need(kind).place();
@@ -147,7 +147,7 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
 }  // namespace
 
 void check_parallelogram(const Vec3d& u, const Vec3d& v, const Value& v_value) {
-  // Unit vectors first: the product of very long or short ones would over- or underflow.
+  // Normalised first: the product of very long or short vectors would over- or underflow.
   if (length(cross(normalized(u), normalized(v))) < 1e-9)
     v_value.fail("spans no area", "not parallel to 'u'");
 }
@@ -160,7 +160,7 @@ Shape read_shape(const Value& value, const std::string& name, ShapeContext& cont
   shape.name = own_name ? own_name->string() : name;
   shape.source = read_source(reader, context, shape.place);
   if (transform) shape.to_world = read_transform(*transform, context.mm_per_unit);
-  // A mesh file not fitted to a size in mm is still in scene units.
+  // A mesh file without a size in mm is in scene units.
   const auto* mesh = std::get_if<MeshFile>(&shape.source);
   if (mesh != nullptr && !mesh->fit_size)
     for (Vec3d* axis : {&shape.to_world.x, &shape.to_world.y, &shape.to_world.z})

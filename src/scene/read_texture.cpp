@@ -12,7 +12,7 @@ bool is_texture(const Value& value) {
   return value.node().kind == Node::Kind::object;
 }
 
-/// Part of a texel used by a value.
+/// Channels of a texel used by a value.
 enum class TexturePart { color, triple, number };
 
 std::array<double, 2> read_pair(const Value& value) {
@@ -27,7 +27,7 @@ ColorSpace space_of(const ObjectReader& reader, const std::string& path, Texture
   return part == TexturePart::color ? TextureFile::space_of_colors(path) : ColorSpace::linear;
 }
 
-/// error unless the image has the part's channels; one without alpha is opaque: alpha is 1
+/// error unless the image has the channels; a missing alpha is 1
 void check_channels(const Value& file, const std::optional<Value>& channel, const Texture& texture,
                     TexturePart part) {
   constexpr std::array<char, 4> names{'r', 'g', 'b', 'a'};
@@ -72,7 +72,7 @@ Texture read_texture(const Value& value, TexturePart part) {
   return texture;
 }
 
-/// error unless it is in the range of the value's row
+/// error outside the range of the value's row
 double checked(const Value& value, double number) {
   const Range& range = value.info().range;
   if (!(number >= range.low && number <= range.high))

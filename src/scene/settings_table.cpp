@@ -64,7 +64,7 @@ Owner owner_of(T Owner::*);
 template <class Owner, class T>
 T value_of(T Owner::*);
 
-/// A row whose value goes into one member. Without a documented default the one of the member is shown.
+/// Row of a value for one member. Without a documented default, shows the member's.
 template <auto kMember>
 auto member(std::string_view key, ValueType type, std::string_view unit, const Range& range,
             std::string default_value, std::string_view meaning) {
@@ -88,7 +88,7 @@ Member<Settings> read_by(void (*read)(Settings&, const Value&, double), Member<S
   return member;
 }
 
-constexpr double kLeastTolerance = 1e-4;  // asked for 1e-5, the p99 on a sphere is 6.2e-5
+constexpr double kLeastTolerance = 1e-4;  // limit of single precision
 
 void read_tolerance(Settings& settings, const Value& value, double) {
   settings.tolerance = value.number({0, 1, true});
@@ -112,7 +112,7 @@ std::string laboratory_json(const Settings& settings) {
   return '{' + json + '}';
 }
 
-// ---- members that are more than one value -----------------------------------------------------------------
+// ---- rows of more than one value --------------------------------------------------------------------------
 
 void read_resolution(Film& film, const Value& value, double) {
   const std::vector<Value> sides = value.list(2, "[width, height]");

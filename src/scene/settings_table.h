@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The keys of `film` and `settings`, each with the member it sets: a new setting is a member of scene.h and a
-// row here.
+// Keys of `film` and `settings`, each with its member: a new setting is a member of scene.h and a row here.
 #pragma once
 
 #include <span>
@@ -11,7 +10,7 @@
 
 namespace opaline {
 
-/// A row of the schema whose value goes into a member of Owner.
+/// Row of the schema, for a member of Owner.
 template <class Owner>
 struct Member {
   KeyInfo info;

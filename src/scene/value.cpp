@@ -16,7 +16,7 @@
 namespace opaline {
 namespace {
 
-// Beyond this ray tracers drop triangles, and below its inverse squares vanish.
+// Larger lengths lose triangles in ray tracers, and the inverse squares of smaller ones vanish.
 constexpr double largest_length = 1e18;  // mm
 
 std::string short_number(double value) {
@@ -42,7 +42,7 @@ int hex_digit(char c) {
   return -1;
 }
 
-/// True for words of other languages for infinity and what is not a number.
+/// True for other languages' words for infinity and NaN.
 bool names_no_finite_number(std::string_view text) {
   if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
   const std::string word = in_lower_case(text);
@@ -85,7 +85,7 @@ std::uint64_t Value::whole_number(std::uint64_t low, std::uint64_t high) const {
   const std::string expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
   const Node& node = require_kind(Node::Kind::number, expected);
   std::optional<std::uint64_t> whole = node.whole;
-  // 1e6 is as good as 1000000, as long as a double holds every whole number of that size.
+  // Accepts 1e6 for 1000000, while double is exact.
   if (!whole && node.number >= 0 && node.number <= 9007199254740992.0 &&
       node.number == std::floor(node.number))
     whole = static_cast<std::uint64_t>(node.number);

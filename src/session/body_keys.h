@@ -10,31 +10,31 @@
 
 namespace opaline {
 
-/// Samples that were placed anew, and where: others are carried from them.
+/// Last complete sampling of a body, the origin of carried samples.
 struct SampleOrigin {
   std::shared_ptr<const World> world;
-  std::vector<std::uint32_t> meshes;  // in that world
+  std::vector<std::uint32_t> meshes;  // indices in that world
   StageKey key;
   std::uint64_t seed = 0;
-  std::size_t count = 0;   // asked for
-  double area = 0;         // area of the surface then, mm^2
-  SurfaceSamples surface;  // while the body's own are carried; else the body's own are these
-  SurfaceCells cells;      // cells of these samples; empty until a surface bends where no edits were expected
+  std::size_t count = 0;       // requested
+  double area = 0;             // area of the surface at that time, mm^2
+  SurfaceSamples surface;      // while the body's own are carried; otherwise the body's own are these
+  SurfaceCells cells;          // cells of these samples; empty until a surface deforms without expected edits
   bool count_was_set = false;  // by settings.samples
   std::optional<double> spacing_setting;
 };
 
-/// True if the body no longer suits the spacing that carried samples keep: there would be more of them than
-/// the scene allows, or, where the scene sets their number, a small part of that.
+/// True if the body no longer fits the spacing of carried samples: they would exceed the scene's limit, or,
+/// with a set number, be a small fraction of it.
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings);
 
-/// Keys of the stages that all methods share.
+/// Keys of the stages shared by all methods.
 struct BodyKeys {
   SampleOrigin origin;
   StageKey samples_key, tint_key;
-  std::vector<std::uint32_t> meshes;  // that the samples name
+  std::vector<std::uint32_t> meshes;  // meshes of the samples
   std::vector<StageKey> light_keys;   // keys of the transfers
-  std::vector<Vec3f> cut_normals;     // cut normals of the samples, where cells cut the surface
+  std::vector<Vec3f> cut_normals;     // normals of cut surfaces' samples
 
   bool is_carried() const { return samples_key != origin.key; }
 };

@@ -24,7 +24,7 @@ bool is_close(double a, double b, double relative) {
   return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b));
 }
 
-/// True if all of 0 to below `size` fulfil the condition; by all threads.
+/// True if all of 0 to below `size` fulfil the condition; in parallel.
 template <class Condition>
 bool all_of(std::size_t size, const Condition& condition) {
   std::atomic<bool> holds = true;
@@ -46,7 +46,7 @@ bool stands_on_its_triangle(const SurfaceSample& s, const World& world) {
   return dot(apart, apart) <= far * far && dot(turned, turned) <= 1e-6f;
 }
 
-/// Checks node i and all nodes below it, which lie before `end`.
+/// Checks node i and all nodes below it, before `end`.
 struct TreeCheck {
   const Octree& tree;
 
@@ -148,7 +148,7 @@ bool is_tree_of(const Octree& tree, const SurfaceSamples& samples) {
 }
 
 bool is_walked_profile(std::span<const double> logarithms, double decay, double width) {
-  constexpr double kSteepest = 50;  // a table's values are some units apart
+  constexpr double kSteepest = 50;  // neighbouring values of a table differ by some units
   return logarithms.size() == RadialTable::kKnots && decay >= 0 && decay <= 1 && width >= 1 && width <= 200 &&
          std::ranges::all_of(logarithms, [](double f) { return std::abs(f) < kSteepest; });
 }

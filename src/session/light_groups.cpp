@@ -18,7 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr std::array<std::string_view, 3> kKinds{"diffuse", "specular", "emission"};
-// Rounding of a sum of floats, over what the sum is.
+// Relative rounding error of a sum of floats.
 constexpr float kRounding = 1e-6f;
 
 std::string layer_name(const std::string& light) {
@@ -33,10 +33,10 @@ Error refused(const SourcePlace& place, const std::string& what, const std::stri
                got);
 }
 
-/// First red channel of each kind that a group has, in a picture's pixels.
+/// First red channel of each kind of a group, in an image's pixels.
 struct GroupPlaces {
   std::array<std::size_t, 3> kinds;
-  std::size_t count;  ///< count of kinds; emission is last
+  std::size_t count;  ///< number of kinds; emission is last
 };
 
 std::vector<GroupPlaces> append_layers(Image& picture, std::span<const LightGroup> groups) {
@@ -55,7 +55,7 @@ std::vector<GroupPlaces> append_layers(Image& picture, std::span<const LightGrou
   return all;
 }
 
-/// Reads diffuse, specular and what is left of R, G, B from a picture of all layers.
+/// Reads diffuse, specular and the rest of R, G, B from an image of all layers.
 class PixelReader {
  public:
   explicit PixelReader(const Image& image)
@@ -102,7 +102,7 @@ void scale_to(float total, float* pixel, std::span<const GroupPlaces> groups, st
   if (first == nullptr || double(total) == sum) return;
   const double factor = double(total) / sum;
   if (!(sum > 0) || !std::isfinite(factor)) {
-    *first = total;  // too little light for any of them alone
+    *first = total;  // too little light to scale
     return;
   }
   for (const GroupPlaces& group : groups)

@@ -12,7 +12,7 @@ struct Ball {
   double radius;
 };
 
-/// Around the balls of all a group's meshes.
+/// Bounding sphere of all a body's meshes.
 Ball ball_around(std::span<const MeshKeys> meshes, const GroupPlan& group) {
   Ball ball{};
   for (const std::uint32_t m : group.meshes) ball.center += meshes[m].center / double(group.meshes.size());
@@ -21,8 +21,8 @@ Ball ball_around(std::span<const MeshKeys> meshes, const GroupPlan& group) {
   return ball;
 }
 
-/// True if the hull of both balls meets the third: their mix at t is a ball of the hull, and its gap to the
-/// third is a convex function of t.
+/// True if the hull of two balls intersects a third: the ball interpolated at t is in the hull, and its gap
+/// to the third is a convex function of t.
 bool hull_meets(const Ball& a, const Ball& b, const Ball& third) {
   const auto gap = [&](double t) {
     return length(a.center + (b.center - a.center) * t - third.center) -
@@ -36,7 +36,7 @@ bool hull_meets(const Ball& a, const Ball& b, const Ball& third) {
   return std::min(gap(low), gap(high)) <= 0;
 }
 
-/// The ball swept along the direction for ever.
+/// The ball swept infinitely along the direction.
 bool sweep_meets(const Ball& ball, const Vec3d& direction, const Ball& other) {
   const Vec3d to = other.center - ball.center;
   const double along = std::max(0.0, dot(to, direction));
@@ -49,7 +49,7 @@ bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const Grou
                 const Light& light, double unit) {
   if (std::ranges::find(group.meshes, mesh) != group.meshes.end()) return true;
   Ball target = ball_around(meshes, group);
-  // Rays look for the surface beside a sample, too, and leave it at a small distance.
+  // Includes the ray offset, and the search for the surface beside a sample.
   target.radius = 1.01 * target.radius + 3 * group.spacing / unit;
   const Ball blocker{meshes[mesh].center, meshes[mesh].radius};
   const LightExtent source = extent(light);

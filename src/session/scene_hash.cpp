@@ -28,7 +28,7 @@ std::string contents_of(const Shape& shape, const std::string& path) {
 
 }  // namespace
 
-// Lengths go in front: what is hashed can be cut in one way only.
+// Hashes lengths before contents, so parts cannot be confused.
 std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
                        const Scene& scene) {
   std::error_code ignored;

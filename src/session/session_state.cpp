@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-/// For each new shape the index of an old one with its key, each old one once.
+/// For each new shape, the index of an old one with its key, each old one once.
 std::vector<std::optional<std::size_t>> kept_shapes(const std::vector<StageKey>& before,
                                                     const std::vector<StageKey>& now) {
   std::vector<std::optional<std::size_t>> kept(now.size());
@@ -59,7 +59,7 @@ void Session::State::edit(Scene scene) {
   keep_spacing();
 }
 
-/// One memory a shape: of the same source, or else of a shape of the same name.
+/// One cache per shape: of the same source, or of a shape of the same name.
 void Session::State::arrange_memories(const Scene& scene, const std::vector<StageKey>& sources) {
   std::vector<ShapeMemory> before = std::exchange(shape_memories_, {});
   shape_memories_.resize(scene.shapes.size());
@@ -95,7 +95,7 @@ World Session::State::loaded_world(const Scene& scene, const std::vector<StageKe
   for (std::size_t i = 0; i < shape_memories_.size(); ++i) {
     ShapeMemory& memory = shape_memories_[i];
     if (memory.source != sources[i]) memory.mesh.source_changed();
-    memory.source = {};  // until it is loaded
+    memory.source = {};  // until loaded
     memories.push_back(&memory.mesh);
   }
   const auto done = [&] {
@@ -131,9 +131,9 @@ void Session::State::anchor(Scene scene, Monitor* monitor) {
   anchored_ = true;
 }
 
-// Samples that the settings do not ask for by number stay while their spacing does.
+// Keeps samples without a set number while their spacing is suitable.
 void Session::State::keep_spacing() {
-  constexpr double kDensest = 2, kSparsest = 1.1;  // spacing asked for over the one at hand, and the inverse
+  constexpr double kDensest = 2, kSparsest = 1.1;  // requested spacing over the current one, and the inverse
   const Settings& settings = scene_.settings;
   if (settings.samples || matches_new_) return;
   for (GroupPlan& group : plan_.groups) {
@@ -202,7 +202,7 @@ void Session::State::prepare(Monitor* monitor) {
   });
   std::vector<BodyStages> bodies = body_stages(input, lights);
   for (std::size_t m = kMethodNames.size();
-       m-- > 0;) {  // volume_diffusion before the bodies it leaves to profiles
+       m-- > 0;) {  // volume_diffusion before bodies falling back to profiles
     const auto is_of = [&](const BodyStages& stages) { return stages.body.plan.method == Method(m); };
     if (std::ranges::none_of(bodies, is_of)) continue;
     const SubsurfaceMethod& method = method_of(Method(m));
@@ -281,14 +281,14 @@ void Session::State::update_rays() {
   const auto same = [](const MeshKeys& a, const MeshKeys& b) { return a.all == b.all; };
   if (rays_ != nullptr && rays_build_ == plan_.rays && std::ranges::equal(rays_keys_, mesh_keys_, same))
     return;
-  rays_ = nullptr;  // not both at once
+  rays_ = nullptr;  // never both in memory
   rays_build_ = plan_.rays;
   rays_ = std::make_unique<RayScene>(*world_, rays_build_);
   ++work_.ray_builds;
   rays_keys_ = mesh_keys_;
 }
 
-/// A body for each group of the plan, with what is known of the one of the same name.
+/// Creates a body for each one of the plan, with the cached results of the one with the same name.
 void Session::State::arrange_bodies() {
   std::vector<Body> bodies(plan_.groups.size());
   std::vector<BodyKeys> keys(plan_.groups.size());

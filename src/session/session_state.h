@@ -30,7 +30,7 @@ struct Session::State {
   bool is_needed() const {
     return method_of(scene_.settings.method).needs_samples() && !plan_.groups.empty();
   }
-  /// Bodies that the image depends on: none if the method or the plan has none, even if later scenes may reuse some.
+  /// Bodies used by the image: none if the method or the plan has none, even if later scenes may reuse some.
   std::span<const Body> bodies() const { return is_needed() ? bodies_ : std::span<const Body>{}; }
   void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);
   World loaded_world(const Scene& scene, const std::vector<StageKey>& sources,
@@ -66,11 +66,11 @@ struct Session::State {
   RayBuild rays_build_ = RayBuild::careful;
   std::vector<MeshKeys> rays_keys_;
   std::vector<Body> bodies_;
-  std::vector<BodyKeys> keys_;  // one a body
+  std::vector<BodyKeys> keys_;  // one per body
   std::size_t pictures_ = 1;
   bool holds_view_ = false;
   HeldView view_;
-  std::shared_ptr<const BouncedPlaces> bounced_;  // places of the last image with bounces
+  std::shared_ptr<const BouncedPlaces> bounced_;  // cache points of the last image with bounces
   StageKey bounced_key_;
   StageKey view_key_, view_surfaces_key_, view_coats_key_, view_near_key_, view_samples_key_;
   std::vector<StageKey> view_light_keys_;

@@ -29,7 +29,7 @@ struct AddSource {
   }
 };
 
-/// None: nothing is known of the file, or it was changed so lately that another change could leave it the same.
+/// None: an unknown file, or one changed so recently that another change might not alter its record.
 std::optional<StageKey> record_of(const std::string& path) {
   constexpr std::time_t kSettled = 3;  // seconds: file systems keep times to 2 at the coarsest
   struct stat file;
@@ -68,9 +68,9 @@ StageKey SourceKeys::key(const Shape& shape, MeshUvs uvs) {
 
 StageKey shape_key(const Shape& shape, const StageKey& source) {
   KeyBuilder key("shape", 1);
-  const bool may_be_open = !shape.medium;  // then an open quad is no reason for a warning
+  const bool may_be_open = !shape.medium;  // allows an open quad without a warning
   key.add(source).add(shape.to_world).add(shape.normals).add(may_be_open);
-  key.add(shape.name);  // messages have it
+  key.add(shape.name);  // used in messages
   return key.key();
 }
 

@@ -10,12 +10,12 @@
 
 namespace opaline {
 
-/// Keys of what meshes are loaded from. A file's bytes are hashed once: again only where the system's record of it, with
-/// the time of its last change, is another, or so young that a change could have left it as it is.
+/// Keys of meshes' sources. Hashes a file's bytes again only if the system's record of it, with the time of
+/// its last change, differs, or is too recent to show a further change.
 class SourceKeys {
  public:
-  /// Key of the file's bytes or the built-in shape's measures, and how UVs are asked for.
-  /// error Error{bad_input} naming a mesh file that is none
+  /// Key of the file's bytes or the built-in shape's dimensions, and of the UV request.
+  /// error Error{bad_input} naming a file other than a mesh
   StageKey key(const Shape& shape, MeshUvs uvs = MeshUvs::unread);
 
  private:
@@ -27,7 +27,7 @@ class SourceKeys {
   std::map<std::string, Hashed> hashed_;  ///< by path
 };
 
-/// Shape key of the source and all that loading does with it.
+/// Key of the source and everything affecting its loading.
 StageKey shape_key(const Shape& shape, const StageKey& source);
 
 }  // namespace opaline

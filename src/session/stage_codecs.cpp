@@ -266,7 +266,7 @@ std::uint64_t VolumeCodec::most_bytes() const {
   return samples * 2 * sizeof(RgbF) + kAroundSets;
 }
 
-// A node that is no leaf has two children or more.
+// An inner node has at least two children.
 std::uint64_t OctreeCodec::most_bytes() const {
   return samples.samples.size() * (2 * sizeof(OctreeNode) + sizeof(TreeSample) + sizeof(Vec3f)) + kAroundSets;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stage results as data sets of a cache entry. Each codec checks what it reads against the inputs of the stage
-// (check_contents.h): an entry may have been forged.
+// Stage results as data sets of a cache entry. Each codec checks its data against the inputs of the stage
+// (check_contents.h), as an entry may be forged.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +19,15 @@
 
 namespace opaline {
 
-/// Surface that the samples of an entry must lie on.
+/// Surface containing an entry's samples.
 struct SampledSurface {
   const World& world;
-  std::span<const std::uint32_t> meshes;  ///< the body's, in its order
-  std::size_t count;                      ///< samples asked for
+  std::span<const std::uint32_t> meshes;  ///< meshes of the body, in its order
+  std::size_t count;                      ///< requested samples
 };
 
-/// Samples of a surface. Entries number meshes by their position in the body: a scene may number its shapes differently.
+/// Samples of a surface. Entries number meshes by their position in the body: a scene may number its shapes
+/// differently.
 struct SamplesCodec {
   using Value = SurfaceSamples;
   static constexpr const char* kStage = "samples";
@@ -86,14 +87,14 @@ struct SurfaceCacheCodec {
   using Value = SurfaceCache;
   static constexpr const char* kStage = "exitance";
   const World& world;
-  std::span<const std::uint32_t> meshes;  ///< the body's, in its order
+  std::span<const std::uint32_t> meshes;  ///< meshes of the body, in its order
 
   std::uint64_t most_bytes() const { return std::numeric_limits<std::uint64_t>::max(); }
   void put(BlobWriter& file, const SurfaceCache& exitance) const;
   std::optional<SurfaceCache> get(const BlobReader& entry) const;
 };
 
-/// Shape of a radial profile that random walks tabulate.
+/// Shape of a radial profile tabulated by random walks.
 struct WalkedProfileCodec {
   using Value = RadialTable;
   static constexpr const char* kStage = "profile";

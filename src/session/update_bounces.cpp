@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The light that goes from one surface to another: at the samples of bodies and at places of the picture.
+// Indirect light: at the samples of bodies and at cache points of the image.
 #include <memory>
 
 #include "session/session_state.h"
@@ -12,9 +12,9 @@ void tint_bounced(const Body& body, std::span<RgbF> bounced) {
   for (std::size_t i = 0; i < body.entering.size(); ++i) bounced[i] = bounced[i] * body.entering[i];
 }
 
-/// Replaces the light of bodies by their direct light, from which the first bounce is gathered; the destructor restores
-/// it. An interrupted constructor leaves the bodies unchanged: it replaces nothing before it has computed everything,
-/// because no destructor would restore it.
+/// Replaces the light of bodies by their direct light, for gathering the first bounce; the destructor
+/// restores it. An interrupted constructor leaves the bodies unchanged: it replaces nothing before everything
+/// is computed, as no destructor would restore it.
 class DirectlyLitBodies {
  public:
   explicit DirectlyLitBodies(std::span<BodyStages> bodies) : bodies_(bodies) {
@@ -33,7 +33,7 @@ class DirectlyLitBodies {
   }
 
   std::span<BodyStages> bodies_;
-  std::vector<std::unique_ptr<MethodState>> other_;  // one a body
+  std::vector<std::unique_ptr<MethodState>> other_;  // one per body
 };
 
 }  // namespace
@@ -91,18 +91,18 @@ std::vector<std::vector<RgbF>> Session::State::cached_bounces(std::span<const St
   return all;
 }
 
-/// Reuses the positions while the camera sees the same surfaces in the same light.
+/// Reuses the cache points while the camera sees the same surfaces in the same light.
 void Session::State::update_bounced_places(const RenderInput& input) {
   const PrecomputeInput precompute{scene_, *world_, *rays_, plan_, input.monitor};
   const std::vector<Light> lights = recentred_lights(scene_, *world_);
   KeyBuilder builder("bounced places", 2);
   builder.add(view_key(precompute, mesh_keys_)).add(surfaces_key(precompute, mesh_keys_, lights));
-  for (const Light& light : scene_.lights) builder.add(light.is_seen);  // else surfaces behind it are seen
+  for (const Light& light : scene_.lights) builder.add(light.is_seen);  // an invisible light hides no surface
   for (const Body& body : bodies()) {
     const SubsurfaceMethod& method = method_of(body.plan.method);
     builder.add(method.bounced_key(body)).add(method.direct_key(body));
   }
-  // The keys of bodies say nothing where none are prepared.
+  // Keys of bodies are undefined without prepared bodies.
   const StageKey key = is_needed() ? builder.key() : StageKey{};
   if (bounced_ != nullptr && key != StageKey{} && key == bounced_key_) return;
   std::vector<BodyStages> stages = body_stages(precompute, lights);

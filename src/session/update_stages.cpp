@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stages that all methods share: samples and the light transmitted there. A result gets its key once it is complete.
+// Stages shared by all methods: samples and their transmitted light. A result gets its key once it is
+// complete.
 #include <fmt/format.h>
 
 #include "opaline/render/surface_textures.h"
@@ -21,7 +22,7 @@ void renumber(std::vector<SurfaceSample>& samples, const std::vector<std::uint32
   for (SurfaceSample& s : samples) s.mesh = to[std::size_t(std::ranges::find(from, s.mesh) - from.begin())];
 }
 
-/// As many as the stretched surface takes at the spacing that its samples have.
+/// Number of samples on the stretched surface at their current spacing.
 std::size_t carried_count(const SampleOrigin& origin, const GroupPlan& plan) {
   const double stretched = origin.area > 0 ? std::max(1.0, plan.area / origin.area) : 1;
   return std::size_t(std::min(1e9, double(origin.surface.samples.size()) * stretched));
@@ -30,7 +31,7 @@ std::size_t carried_count(const SampleOrigin& origin, const GroupPlan& plan) {
 }  // namespace
 
 bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings) {
-  constexpr double kMore = 2;          // times the number, where the scene allows no more than that
+  constexpr double kMore = 2;          // factor on the number, if above the scene's maximum
   constexpr double kFewer = 1.0 / 16;  // fraction of the number: spacing four times as large as requested
   if (!(origin.area > 0)) return false;
   const double count = double(origin.count), carried = count * (plan.area / origin.area);
@@ -44,7 +45,7 @@ void Session::State::update_samples(Body& body, BodyKeys& known, const Precomput
   if (body.plan.cell > 0) return cut_new_samples(body, known, input);
   const StageKey placed = samples_key(input, mesh_keys_, group);
   if (placed == known.samples_key) return reuse_samples(body, known);
-  if (placed == known.origin.key) {  // back where they were placed
+  if (placed == known.origin.key) {  // back at the original position
     body.surface = std::move(known.origin.surface);
     known.meshes = known.origin.meshes;
     known.samples_key = placed;
@@ -70,7 +71,7 @@ void Session::State::reuse_samples(Body& body, BodyKeys& known) {
   note_decision(body, fmt::format("{} samples reused", body.surface.samples.size()));
 }
 
-// Next to nothing beside what follows, so they are not kept in a cache.
+// Negligible compared with later stages, so not cached.
 void Session::State::cut_new_samples(Body& body, BodyKeys& known, const PrecomputeInput& input) {
   const StageKey key = cut_surface_key(body.plan, mesh_keys_, world_->unit);
   if (key == known.samples_key) return reuse_samples(body, known);

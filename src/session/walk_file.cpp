@@ -15,12 +15,13 @@
 namespace opaline {
 namespace {
 
-// The arrays lie one after the other in the pixels, row by row; a line of text for each source says which.
+// The arrays are stored one after the other in the pixels, row by row; a text line per source identifies
+// them.
 constexpr const char* kSources = "opaline:walk_sources";
 constexpr int kWidth = 1024;
 constexpr std::array<const char*, 2> kChannels{"flux", "root"};
 
-/// Text keeps all bits of it.
+/// Text keeps all bits.
 std::uint64_t bits(double value) {
   return std::bit_cast<std::uint64_t>(value);
 }
@@ -37,7 +38,7 @@ Error not_walks(const std::string& path) {
   return bad_file(path, "does not hold the sums of random walks", "a file written by --resume");
 }
 
-/// Takes the next of the arrays lying one after the other.
+/// Takes the next array.
 class Arrays {
  public:
   Arrays(const std::string& path, const Image& image) : path_(path), image_(image) {

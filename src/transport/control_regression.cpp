@@ -43,11 +43,11 @@ ControlRegression::ControlRegression(const std::vector<std::vector<double>>& con
 }
 
 void ControlRegression::take_in(Column column, bool is_balance) {
-  constexpr double kDependent = 1e-6;  // relative to its own spread
+  constexpr double kDependent = 1e-6;  // relative to its own deviation
   constexpr double kMostOff = 5;       // standard errors of its mean
   constexpr double kFewBatches = 40;
   const double spread = norm(column.values);
-  for (int round = 0; round < 2; ++round)  // once leaves rounding errors of what it took out
+  for (int round = 0; round < 2; ++round)  // removes the rounding errors of the first round
     for (const Column& other : columns_) {
       const double factor = product(column.values, other.values);
       subtract(column.values, factor, other.values);
@@ -55,7 +55,7 @@ void ControlRegression::take_in(Column column, bool is_balance) {
     }
   const double left = norm(column.values);
   if (!(left > kDependent * spread)) return;
-  double fourth = 0;  // sum of fourth powers: one over the number of batches that it lives on
+  double fourth = 0;  // sum of fourth powers: one over the effective number of batches
   for (double& value : column.values) {
     value /= left;
     fourth += value * value * value * value;
@@ -78,7 +78,7 @@ WalkedValue ControlRegression::mean(std::span<const double> values) const {
   for (const Column& column : columns_) subtract(rest, product(rest, column.values), column.values);
   double variance = 0;
   for (std::size_t b = 0; b < rest.size(); ++b) {
-    const double without_itself = rest[b] / std::max(1e-3, 1 - leverage_[b]);  // as the others foretell it
+    const double without_itself = rest[b] / std::max(1e-3, 1 - leverage_[b]);  // leave-one-out residual
     variance += shares_[b] * shares_[b] * without_itself * without_itself;
   }
   return {product(shares_, values), std::sqrt(variance)};

@@ -30,8 +30,8 @@ double average_reflectance_inside(double eta) {
 
 double reflectance_moment_inside(double eta) {
   if (eta == 1) return 0;
-  // Over the outer cosine c where light gets out: mu^2 = 1 - (1 - c^2)/eta^2, mu d mu = c dc / eta^2. Beyond
-  // the critical angle F = 1; below eta = 1 light from inside gets out at outer cosines of sqrt(1 - eta^2) on.
+  // Over the outer cosine c of exiting light: mu^2 = 1 - (1 - c^2)/eta^2, mu d mu = c dc / eta^2. Beyond the
+  // critical angle F = 1; for eta < 1, light from inside exits at outer cosines above sqrt(1 - eta^2).
   const double inverse = 1 / (eta * eta);
   const double first = eta < 1 ? std::sqrt(1 - eta * eta) : 0;
   const auto integrand = [&](double u) {

@@ -35,7 +35,7 @@ void add_panel(double low, double high, std::vector<Node>& nodes) {
   }
 }
 
-/// Parted at the critical angle, where there is one.
+/// Split at the critical angle, if any.
 std::vector<Node> make_nodes(double eta) {
   const double critical = eta > 1 ? std::sqrt(1 - 1 / (eta * eta)) : .25;
   std::vector<Node> nodes;
@@ -44,7 +44,7 @@ std::vector<Node> make_nodes(double eta) {
   return nodes;
 }
 
-/// 1 - t cot t, its digits kept where t is small.
+/// 1 - t cot t, without cancellation for small t.
 double cotangent_deficit(double t) {
   if (t > .2) return 1 - t / std::tan(t);
   const double s = t * t;
@@ -52,9 +52,9 @@ double cotangent_deficit(double t) {
               s * (1. / 45 + s * (2. / 945 + s * (1. / 4725 + s * (2. / 93555 + s * 1382. / 638512875)))));
 }
 
-/// Chandrasekhar's H function of isotropic scattering: ln H(mu) = -(mu / pi) times the integral over t from 0 to
-/// pi/2 of ln(1 - c t cot t) / (cos^2 t + mu^2 sin^2 t). The rule is the double exponential one, dense at both
-/// ends: the logarithm varies fast near 0, the denominator near pi/2.
+/// Chandrasekhar's H function of isotropic scattering: ln H(mu) = -(mu / pi) times the integral over t from 0
+/// to pi/2 of ln(1 - c t cot t) / (cos^2 t + mu^2 sin^2 t). The rule is the double exponential one, dense at
+/// both ends: the logarithm varies fast near 0, the denominator near pi/2.
 class HFunction {
  public:
   explicit HFunction(double absorbed) {
@@ -87,7 +87,7 @@ class HFunction {
 using Matrix = std::array<std::array<double, kNodes>, kNodes>;
 using Vector = std::array<double, kNodes>;
 
-/// The solution of (1 - M) x = b, whose rows sum to less than 1: no pivoting is needed.
+/// Solves (1 - M) x = b with row sums of M below 1, without pivoting.
 Vector solve_series(Matrix& m, Vector b) {
   for (std::size_t i = 0; i < kNodes; ++i)
     for (std::size_t j = 0; j < kNodes; ++j) m[i][j] = (i == j ? 1 : 0) - m[i][j];
@@ -142,7 +142,7 @@ HalfSpace::HalfSpace(double absorbed, double eta) : absorbed_(absorbed) {
   diffuse_share_ = std::clamp(left / entered, 0.0, 1.0);
 }
 
-// By reciprocity it is the radiance coming up along the direction where light enters from everywhere.
+// By reciprocity it is the upward radiance in the direction of incidence, under uniform illumination.
 double HalfSpace::share(double cos_inside) const {
   if (sources_.empty()) return diffuse_share_;
   double sum = 0;

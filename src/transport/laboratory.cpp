@@ -15,7 +15,7 @@ namespace {
 
 const Vec3d kUp{0, 0, 1};
 
-/// The slab lies between z = 0, where light enters, and z = -thickness.
+/// Slab between z = 0, the face of entry, and z = -thickness.
 struct SlabBody {
   double thickness;
 
@@ -56,7 +56,7 @@ struct Experiment {
   SlabControls controls;
 };
 
-/// Counts what one walk does.
+/// Records one walk.
 struct SlabWatcher {
   const Experiment& experiment;
   SlabTally& tally;
@@ -79,7 +79,7 @@ struct SlabWatcher {
   }
 };
 
-/// Within a batch the cosines of entry are stratified.
+/// Within a batch, the cosines of incidence are stratified.
 void walk_once(const Experiment& experiment, std::size_t batch, std::size_t i, SlabTally& tally) {
   const double eta = experiment.medium.eta;
   WalkNumbers numbers(experiment.seed, batch * experiment.walks_each + i);

@@ -8,7 +8,7 @@
 
 namespace opaline {
 
-/// error Error{bad_input} that names the first setting out of its range
+/// error Error{bad_input} naming the first setting out of its range
 void check_settings(const LaboratorySettings& settings);
 
 inline std::size_t walks_of_a_batch(const LaboratorySettings& settings) {

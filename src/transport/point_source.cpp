@@ -19,7 +19,7 @@ double tanh_deficit(double t) {
   return s * (1. / 3 - s * (2. / 15 - s * (17. / 315 - s * (62. / 2835 - s * (1382. / 155925)))));
 }
 
-/// kappa = tanh(t), where 1 - tanh(t) / t = absorbed.
+/// kappa = tanh(t), with 1 - tanh(t) / t = absorbed.
 double decay_parameter(double absorbed) {
   require(absorbed >= 0 && absorbed < 1, "the decay constant of a medium that scatters");
   if (absorbed == 0) return 0;
@@ -36,12 +36,12 @@ double decay_parameter(double absorbed) {
 double discrete_weight(double absorbed, double t) {
   const double c = 1 - absorbed, kappa = std::tanh(t), cosh = std::cosh(t);
   if (absorbed == 0) return 3;
-  // c - 1 + kappa^2 = kappa^2 - absorbed: of the order of 2 absorbed where that is small.
+  // c - 1 + kappa^2 = kappa^2 - absorbed, about 2 absorbed if that is small.
   return 2 * kappa * kappa / (cosh * cosh * c * (kappa * kappa - absorbed));
 }
 
-/// The integral over x from 1 of exp(-r x) / ((1 - c Q)^2 + (c pi / (2 x))^2), Q = ln((x + 1) / (x - 1)) / (2 x); r in
-/// mean free paths.
+/// The integral over x from 1 of exp(-r x) / ((1 - c Q)^2 + (c pi / (2 x))^2), Q = ln((x + 1) / (x - 1)) / (2
+/// x); r in mean free paths.
 double continuous_modes(double c, double r) {
   const auto integrand = [&](double above) {  // x - 1
     const double x = 1 + above, q = std::log1p(2 / above) / (2 * x), p = pi / (2 * x);

@@ -12,19 +12,19 @@ namespace opaline {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-// Against facets that are level in one direction, whose density has no bound.
+// Bound of the density for facets level in one direction.
 constexpr float kLeastAcross = 1e-3f;
-// Least alpha of roughness .001: what is smoother spreads light by less than single precision tells directions apart.
+// Alpha of the least roughness, 0.001: below, single precision does not resolve the spread of directions.
 constexpr float kLeastAlpha = 1e-6f;
 constexpr std::size_t kSides = 9;
 
-/// Seen alpha of a view by its tangent_share.
+/// Alpha along the azimuth of a view, by its tangent_share.
 float seen_alpha(const FacetAlphas& alphas, float tangent_share) {
   const float along2 = alphas.along * alphas.along, across2 = alphas.across * alphas.across;
   return std::sqrt(across2 + (along2 - across2) * tangent_share);
 }
 
-/// The tangent_share at which the alpha that is seen is this part of the way from the smaller to the larger one.
+/// tangent_share of a view with its alpha at this fraction between the smaller and the larger one.
 float share_of_side(const FacetAlphas& alphas, float part) {
   const float seen = alphas.across + (alphas.along - alphas.across) * part;
   const float along2 = alphas.along * alphas.along, across2 = alphas.across * alphas.across;
@@ -94,13 +94,13 @@ float RoughBoundary::facets(const Vec3f& normal) const {
   return 1 / (kPi * (a * b) * slope2 * slope2);
 }
 
-// Facets of a rough surface are those of a hemisphere, stretched: its disc as seen by the viewer is drawn from evenly.
+// Facets of a rough surface are those of a stretched hemisphere: samples its projected disc uniformly.
 RoughBoundary::Sample RoughBoundary::sample(const Vec3f& view, std::array<double, 2> unit_square) const {
   const Vec3f stretched = normalized(Vec3f{alphas_.along * view.x, alphas_.across * view.y, view.z});
   Vec3f x, y;
   tangent_frame(stretched, x, y);
   const float radius = float(std::sqrt(unit_square[0])), phi = 2 * kPi * float(unit_square[1]);
-  // y of the frame that has x level: half of the disc is seen foreshortened.
+  // y of the frame with horizontal x: half of the disc is foreshortened.
   const float level = std::sqrt(stretched.x * stretched.x + stretched.y * stretched.y);
   if (level > 1e-6f) {
     x = Vec3f{-stretched.y, stretched.x, 0} * (1 / level);
@@ -115,7 +115,7 @@ RoughBoundary::Sample RoughBoundary::sample(const Vec3f& view, std::array<double
   const Vec3f light = normal * (2 * cosine) - view;
   if (!(light.z > 0 && cosine > 0)) return {light, 0};
   const float seen = smith(view), lit = smith(light);
-  // G2 / G1 with heights in common.
+  // G2 / G1, height-correlated.
   const float both = lit / (seen + lit - seen * lit);
   return {light, fresnel_reflectance(std::min(cosine, 1.0f), eta_) * both};
 }

@@ -7,7 +7,7 @@
 namespace opaline {
 namespace {
 
-// The boundary layer: steeper would make flights along the gradient diverge.
+// The boundary layer: a larger rate would make flights along the gradient diverge.
 constexpr double kFastRate = .97, kSteepestSlowRate = .9;
 
 using Orders = std::array<double, SlabControls::kOrders>;
@@ -19,7 +19,7 @@ Orders legendre(double cosine) {
   return p;
 }
 
-/// The decay of diffusion far from the faces, per mean free path (Grosjean's diffusion coefficient).
+/// Decay of diffusion far from the faces, per mean free path (Grosjean's diffusion coefficient).
 double diffusion_rate(const HomogeneousMedium& medium) {
   const double albedo = medium.albedo(), anisotropic = albedo * medium.g;
   const double absorbed = (1 - albedo) / (1 - anisotropic);  // 1 - reduced albedo
@@ -34,7 +34,7 @@ SlabControls::SlabControls(const HomogeneousMedium& medium, double thickness)
       optical_thickness_(medium.sigma_t() * thickness),
       rates_used_(is_half_space_ ? 3 : kRates) {
   double slow = diffusion_rate(medium);
-  if (!is_half_space_) slow = std::max(slow, .5 / optical_thickness_);  // about straight, across the slab
+  if (!is_half_space_) slow = std::max(slow, .5 / optical_thickness_);  // about linear across the slab
   slow = std::min(slow, kSteepestSlowRate);
   rates_ = {0, -slow, -kFastRate, slow, kFastRate};
   near_ = exponentials(0);
@@ -50,8 +50,8 @@ SlabControls::Exponentials SlabControls::exponentials(double depth) const {
   return {1, slow, fast, std::exp(rates_[1] * height), std::exp(rates_[2] * height)};
 }
 
-/// A flight from depth t with upward cosine mu: exp(rate t) becomes the mean over free paths s of
-/// exp(rate (t - mu s)), and at a collision an order l is damped by albedo g^l; a reflection turns mu around.
+/// A flight from depth t with upward cosine mu: exp(rate t) becomes the mean over free paths s of exp(rate (t
+/// - mu s)); a collision damps order l by albedo g^l; a reflection negates mu.
 void SlabControls::visit(const WalkState& walk, const Crossing& crossing, Sums& sums) const {
   const double cosine = walk.direction.z, uncollided = 1 - crossing.collided;
   const Exponentials here = exponentials(-walk.position.z * medium_.sigma_t());

@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-/// Means over batches of sums over walks, less what the controls foretell.
+/// Means over batches of sums over walks, with control variates.
 class BatchMeans {
  public:
   BatchMeans(std::span<const SlabTally> batches, std::size_t walks_each)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sums over a batch of walks, and what many batches amount to.
+// Sums over a batch of walks, and results over many batches.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace opaline {
 
-/// Sums of weight that left by one face.
+/// Sums of the weight leaving through one face.
 struct FaceTally {
   double total = 0, uncollided = 0;
-  std::vector<double> rings;    ///< one more than there are radii: the last is what lies beyond
+  std::vector<double> rings;    ///< one more than radii: the last is everything beyond
   std::vector<double> cosines;  ///< outside
 };
 
@@ -23,10 +23,10 @@ struct SlabTally {
   SlabControls::Sums controls{};
   double absorbed = 0, unfinished = 0, collisions = 0;
   std::vector<double> entered,
-      returned;  ///< by cosine of entry, diffuse entry alone: weight at the start, and back
+      returned;  ///< by cosine of incidence, diffuse only: weight at the start, and returned
 };
 
-/// Where light leaving is counted.
+/// Tally of exiting light.
 struct TallyBins {
   std::vector<double> radii, squared_radii;
   std::size_t cosines = 0;

@@ -16,7 +16,7 @@ namespace http = beast::http;
 constexpr std::size_t kLongestHeader = 8192;  // bytes
 constexpr std::chrono::seconds kPatience{10};
 
-/// In a time that does not tell how much of it is right.
+/// Constant-time comparison: its duration does not depend on the matching prefix.
 bool same_secret(std::string_view a, std::string_view b) {
   unsigned difference = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) difference |= unsigned(a[i] ^ b[i]);

@@ -11,20 +11,20 @@
 
 namespace opaline {
 
-/// Who may ask for what.
+/// Access control.
 struct AccessRules {
   std::string token;               ///< first part of every path
   std::vector<std::string> hosts;  ///< allowed values of the header Host; empty: any
 };
 
-/// Why a request is refused; the status and a text.
+/// Reason of a refusal: the status and a text.
 struct Refusal {
   boost::beast::http::status status = boost::beast::http::status::ok;
   std::string why;
 };
 
-/// The part of the request's path behind the token.
-/// refusal: why not; a WebSocket needs the page's own Origin
+/// Path of the request after the token.
+/// refusal: its reason; a WebSocket needs the page's own Origin
 std::string allowed_path(const HttpRequest& request, const AccessRules& rules,
                          std::optional<Refusal>& refusal);
 

@@ -29,10 +29,10 @@ bool is_same(double factor, double other) {
   return std::abs(factor - other) <= kSame * other;
 }
 
-/// A channel's is none where no light has it.
+/// Factor per channel; none without a light in the channel.
 using ChannelFactors = std::array<std::optional<double>, 3>;
 
-/// By which each channel of all lights differs; none: not by one factor.
+/// Common factor of all lights per channel; none: they differ by other changes.
 std::optional<ChannelFactors> common_factors(const Scene& before, const Scene& now) {
   ChannelFactors factors;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -55,7 +55,7 @@ bool are_one(const ChannelFactors& factors) {
   return std::all_of(first, factors.end(), [&](const auto& f) { return !f || is_same(*f, **first); });
 }
 
-/// For each channel of a picture the one of the light that it goes with; none: it does not.
+/// Light channel scaling each image channel; none: independent of the lights.
 std::vector<std::optional<std::size_t>> lit_channels(const std::vector<std::string>& names) {
   constexpr std::array<std::string_view, 5> kLit{"", "diffuse.", "specular.", "irradiance.", "error."};
   std::vector<std::optional<std::size_t>> channels;

@@ -14,7 +14,8 @@ namespace websocket = beast::websocket;
 constexpr std::size_t kLongestMessage = 1 << 16;  // bytes
 constexpr std::size_t kMostAnswers = 16, kMostFrames = 2;
 constexpr std::chrono::seconds kSilence{60};  // then the page is gone; half of it without a word is a ping
-// Bytes that the system buffers: small, as a frame in its buffer cannot be replaced by a newer one. Linux doubles it.
+// Send buffer of the system, doubled by Linux. Small, because a frame in it cannot be replaced by a newer
+// one.
 constexpr int kSendBuffer = 1 << 17;
 
 }  // namespace
@@ -67,7 +68,7 @@ void PageConnection::send(std::shared_ptr<const ViewPicture> picture) {
 }
 
 void PageConnection::shown(std::uint32_t frame) {
-  // Numbers need not rise: a layer packed before keeps its own.
+  // Numbers may decrease: a layer packed earlier keeps its number.
   const auto last = std::find(unshown_.rbegin(), unshown_.rend(), frame);
   unshown_.erase(unshown_.begin(), last.base());
   write();

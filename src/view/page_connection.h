@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One page's WebSocket: what it asks, and the newest of everything it is to know.
+// WebSocket of one page: its requests, and the newest message of each kind.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ namespace opaline {
 using SharedText = std::shared_ptr<const std::string>;
 using HttpRequest = boost::beast::http::request<boost::beast::http::empty_body>;
 
-/// Messages for a page, in the order of sending. A newer text of a kind replaces a waiting one, so
-/// kind, so no page makes the server store more than one of each.
+/// Messages for a page, in the order of sending. A newer text of a kind replaces a waiting one, so a page
+/// stores at most one of each.
 enum class PageText : std::size_t {
   schema,
   scene,
@@ -36,35 +36,35 @@ enum class PageText : std::size_t {
   kCount
 };
 
-/// A picture as bytes, and the number in them.
+/// An image as bytes, and the number in them.
 struct PackedFrame {
   std::uint32_t number = 0;
   SharedText bytes;
 };
 
-/// Pictures are sent whole. Behind a slow connection the newest one waits, in place of older ones, which are never sent.
+/// Sends images as a whole. Behind a slow connection, the newest waiting image replaces older ones.
 class PageConnection : public std::enable_shared_from_this<PageConnection> {
  public:
-  /// All on the thread of the connection.
+  /// All calls on the connection's thread.
   struct Events {
     std::function<void(PageConnection& page)> opened;
     std::function<void(PageConnection& page, std::string_view text)> message;
     std::function<PackedFrame(const std::shared_ptr<const ViewPicture>& picture, const std::string& layer)>
         pack;
-    std::function<void(PageConnection& page, const std::string& why)> closed;  ///< why: empty if it just left
+    std::function<void(PageConnection& page, const std::string& why)> closed;  ///< why: empty: normal end
   };
 
   /// slot: released when the connection ends
   PageConnection(boost::beast::tcp_stream&& stream, Events events, std::shared_ptr<void> slot);
 
-  /// Answers the request for a WebSocket, and goes on until the page leaves.
+  /// Accepts the WebSocket, and continues until the page leaves.
   void start(const HttpRequest& request);
 
   void send(PageText kind, SharedText text);
-  /// An answer; while kMostAnswers wait, nothing more is read.
+  /// Queues an answer. With kMostAnswers waiting, reading stops.
   void answer(std::string text);
-  /// In place of a picture that waits, or of a reference that waits. A page has at most kMostFrames that it has not yet
-  /// shown.
+  /// Queues an image, replacing a waiting one; references likewise. A page has at most kMostFrames
+  /// unconfirmed images.
   void send(std::shared_ptr<const ViewPicture> picture);
   void shown(std::uint32_t frame);
   void choose_layer(std::string layer) { layer_ = std::move(layer); }

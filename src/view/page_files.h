@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page itself, from the folder page/ when the build is configured.
+// Files of the page, embedded from the folder page/ at configuration.
 #pragma once
 
 #include <span>

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kFile = "message";
 
-/// A message's members, each read once; what is left over is an error.
+/// A message's members, each read once; unread ones are an error.
 class MessageReader {
  public:
   explicit MessageReader(const Document& document) : document_(document) {

@@ -10,12 +10,12 @@
 
 namespace opaline {
 
-/// A value of the scene: a path as of `--set`, and JSON.
+/// A value of the scene: a path as in `--set`, and JSON.
 struct Assignment {
   std::string path, value;
 };
 
-/// stroke: changes of one number other than 0 are one step for undo, as those of a slider that is dragged.
+/// stroke: changes with the same nonzero number are one undo step, as for a dragged slider.
 struct SetValues {
   std::vector<Assignment> values;
   std::uint64_t stroke = 0;
@@ -23,7 +23,7 @@ struct SetValues {
 struct Undo {};
 struct Redo {};
 struct Reset {};
-/// Edits of a page whose server is new: as `--set` takes them.
+/// Edits of a page connecting to a new server, as in `--set`.
 struct Restore {
   std::vector<std::string> edits;
 };
@@ -33,20 +33,20 @@ struct SaveScene {
 struct RenderFile {
   std::string name;
 };
-/// The layer that frames bring beside R G B A; empty: none.
+/// Layer sent with R G B A; empty: none.
 struct ChooseLayer {
   std::string name;
 };
-/// Background work behind the final image, for all pages.
+/// Background work after the final image, for all pages.
 struct WorkBehind {
   bool trade = false;
   std::string reference;  ///< "direct", "volume" or none
 };
-/// Settings for an error, relative, > 0 and < 1.
+/// Chooses settings by error, relative, in (0, 1).
 struct ChooseSettings {
   double error = 0;
 };
-/// The frame of this number is on the screen.
+/// The frame with this number is displayed.
 struct FrameShown {
   std::uint32_t frame = 0;
 };
@@ -54,25 +54,25 @@ struct FrameShown {
 struct GoToFrame {
   int frame = 1;
 };
-/// A camera of the view's own in place of the scene's: JSON as camera.position and camera.look_at take it.
+/// A free camera replacing the scene's: JSON as in camera.position and camera.look_at.
 struct LookFrom {
   std::string position, look_at;
 };
-/// The scene's camera again.
+/// Returns to the scene's camera.
 struct LookBack {};
-/// The view's own camera becomes the scene's.
+/// Makes the free camera the scene's.
 struct KeepLook {};
 
 using PageMessage =
     std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer, WorkBehind,
                  ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook>;
 
-/// in    text: {"do": "set", "values": {"media.marble.specular_ior": 1.4}, "stroke": 7}, {"do": "undo"}, {"do": "redo"},
-///       {"do": "reset"}, {"do": "restore", "edits": ["media.marble.specular_ior=1.4"]}, {"do": "save", "name": "a.json"},
-///       {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
-///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01},
-///       {"do": "frame", "frame": 7}, {"do": "shown", "frame": 3},
-///       {"do": "look", "position": [0, 0, 5], "look_at": [0, 0, 0]}, {"do": "look_back"} or {"do": "keep_look"}
+/// in    text: {"do": "set", "values": {"media.marble.specular_ior": 1.4}, "stroke": 7}, {"do": "undo"},
+///       {"do": "redo"}, {"do": "reset"}, {"do": "restore", "edits": ["media.marble.specular_ior=1.4"]},
+///       {"do": "save", "name": "a.json"}, {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
+///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01}, {"do":
+///       "frame", "frame": 7}, {"do": "shown", "frame": 3}, {"do": "look", "position": [0, 0, 5], "look_at":
+///       [0, 0, 0]}, {"do": "look_back"} or {"do": "keep_look"}
 /// error Error{bad_input}: no such message, within the limits of json_tree.h
 PageMessage parse_page_message(std::string_view text);
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMostSteps = 1000;
 constexpr int kMostKeyedFrames = 100000;
 
-/// The first and last key of all values that change, of a scene that has been parsed; {0, -1} without such.
+/// First and last key of all keyed values of a parsed scene; {0, -1} if there are none.
 std::pair<int, int> key_range(const Json& value) {
   std::pair<int, int> range{0, -1};
   const auto add = [&](int first, int last) {
@@ -53,7 +53,7 @@ void check_pixels(const Scene& scene) {
                    std::to_string(pixels));
 }
 
-/// A page cannot have files opened: neither by their key, nor in an object with one, however it is spelled.
+/// Rejects edits opening files: by their key, or by an object with one, in any spelling.
 void check_opens_nothing(const std::string& file, const std::string& edit) {
   const std::size_t end = edit.find('=');
   const std::string path = '.' + edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
@@ -81,7 +81,7 @@ const Json* child_of(const Json& owner, const std::string& name) {
   return nullptr;
 }
 
-/// At a path as of `--set`; null: the scene has no such value.
+/// At a path as in `--set`; null: missing.
 const Json* value_at(const Json& scene, const std::string& path) {
   const Json* value = &scene;
   std::istringstream names(path);
@@ -94,7 +94,7 @@ bool moves_camera(const std::string& path) {
   return path == "camera" || path.starts_with("camera.position") || path.starts_with("camera.look_at");
 }
 
-/// True if an override is of the path, or of what is in it.
+/// True if an override is of the path, or of a value inside it.
 bool is_within(const std::string& override, const std::string& path) {
   return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
 }
@@ -122,7 +122,7 @@ Scene SceneEdits::parsed(const Edits& edits, const Look& look) const {
   return scene;
 }
 
-/// With the scene's camera in any case: a look must not hide that an edit spoils it.
+/// Parses with the scene's own camera as well: a free camera must not hide an invalid edit.
 Scene SceneEdits::read(const Edits& edits, const Look& look, int frame) const {
   Edits all = given_;
   all.insert(all.end(), edits.begin(), edits.end());
@@ -134,7 +134,7 @@ Scene SceneEdits::read(const Edits& edits, const Look& look, int frame) const {
   return parse_scene(text_, file_, all, frame);
 }
 
-/// The change of one key where the scene has keys for the value.
+/// Changes one key of a keyed value.
 Assignment SceneEdits::with_key(const Assignment& change) const {
   if (frames_.empty() || is_keyed(Json::parse(change.value, nullptr, false))) return change;
   const Json scene = Json::parse(merged_scene(text_, file_, overrides()));

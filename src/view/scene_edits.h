@@ -23,10 +23,11 @@ class SceneEdits {
   SceneEdits(const std::string& file, std::vector<std::string> given, std::vector<int> frames = {});
 
   // Each changes the scene, or throws without a change. An edit without a change is not a step of undo.
-  // error as parse_scene; Error{bad_input}: more than kMostViewPixels, or other mesh files than the opened scene's
+  // error as parse_scene; Error{bad_input}: more than kMostViewPixels, or other mesh files than the opened
+  //       scene's
 
-  /// A keyed value gets a key at the current frame and keeps the others. An edit of the camera position or point of
-  /// interest ends the free camera.
+  /// A keyed value gets a key at the current frame and keeps the others. An edit of the camera position or
+  /// point of interest ends the free camera.
   void set(const SetValues& message);
   void undo();
   void redo();

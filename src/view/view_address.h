@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the view listens, and the word that opens it.
+// Address and access token of the view.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
@@ -15,7 +15,7 @@ using Address = boost::asio::ip::tcp::endpoint;
 /// 128 random bits, hexadecimal.
 std::string random_token();
 
-/// error Error{bad_input}: too short, too long, or characters that a URL would change
+/// error Error{bad_input}: too short, too long, or with characters escaped in a URL
 void check_token(const std::string& token);
 
 /// error Error{bad_input}: no IP address

@@ -16,12 +16,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kRest{400};  // a hand that has stopped
-constexpr double kBetween = 1.5;                 // s of work between two pictures of a reference
+constexpr std::chrono::milliseconds kRest{400};  // pause after the last edit
+constexpr double kBetween = 1.5;                 // s of work between two images of a reference
 constexpr std::size_t kMostEntries = 1 << 16;    // then a reference is done
 constexpr double kFirstNoise = 1, kLessNoise = .8, kLeastNoise = .005;  // relative noise of random walks
 
-/// The scene without what a point of the trade sets, and what no error depends on.
+/// The scene without settings varied by the trade-off, and without values not affecting errors.
 Scene without_trade(Scene scene) {
   scene.settings.method = Method::hierarchical;
   scene.settings.samples.reset();
@@ -32,7 +32,8 @@ Scene without_trade(Scene scene) {
   return scene;
 }
 
-/// True if the scene has the point's settings: lengths go through the scene's unit and back.
+/// True if the scene has the point's settings; compares lengths after conversion to the scene's unit and
+/// back.
 bool is_at(const Settings& settings, const TradePoint& point) {
   const auto is_near = [](double a, double b) { return std::abs(a - b) <= 1e-6 * std::abs(b); };
   if (settings.method != point.method) return false;
@@ -94,7 +95,7 @@ void ViewBackground::run() {
   while (true) {
     std::unique_lock lock(mutex_);
     news_.wait(lock, [&] { return stopped_ || changed_; });
-    // A newer change within the rest starts it again.
+    // A newer change within the pause restarts it.
     while (!stopped_ && std::exchange(changed_, false))
       news_.wait_for(lock, kRest, [&] { return stopped_ || changed_; });
     if (stopped_) return;
@@ -124,7 +125,7 @@ void ViewBackground::run() {
 void ViewBackground::work(const Job& job, const BackgroundWork& wanted) {
   if (wanted == BackgroundWork{}) return;
   if (session_ == nullptr) session_ = std::make_unique<Session>();
-  if (wanted.target_error) return choose(job, *wanted.target_error);  // the rest when its picture is there
+  if (wanted.target_error) return choose(job, *wanted.target_error);  // the rest follows with its final image
   if (wanted.trade) find_trade(job);
   if (wanted.reference == Method::direct) refine_direct(job);
   if (wanted.reference == Method::volume) refine_volume(job);
@@ -147,7 +148,7 @@ void ViewBackground::choose(const Job& job, double target_error) {
 
 // ---- the trade ----------------------------------------------------------------------------------------------
 
-/// True if the points are those of the scene: then it has taken one of them, or is back where it was.
+/// True if the points belong to the scene: after choosing one of them, or after undo.
 bool ViewBackground::keeps_trade(const Job& job) const {
   if (!trade_scene_ || without_trade(*trade_scene_) != without_trade(job.scene)) return false;
   return trade_scene_->settings == job.scene.settings ||
@@ -185,7 +186,7 @@ void ViewBackground::find_trade(const Job& job) {
 
 void ViewBackground::publish(const Job& job, RenderResult result, const Layer& variance,
                              ReferenceState state) {
-  advance(&monitor_, 0);  // nobody looks at it once there is a newer scene
+  advance(&monitor_, 0);  // obsolete once there is a newer scene
   state.revision = job.shown->revision;
   const Layer shown = extract_layer(job.shown->image, "diffuse");
   const Layer reference = extract_layer(result.image, "diffuse");
@@ -201,7 +202,7 @@ void ViewBackground::refine_direct(const Job& job) {
   Scene scene = job.scene;
   scene.settings.method = Method::direct;
   scene.settings.until_error.reset();
-  ++scene.settings.seed;  // independent of a picture that is `direct` itself
+  ++scene.settings.seed;  // independent of an image by `direct`
   session_->edit(scene);
   check_memory(session_->plan());
   session_->prepare(&monitor_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Background work behind a final image without edits: settings for an error, the trade of error
-// against time, and a reference that goes on refining.
+// Background work after a final image, during a pause of edits: settings for an error, the trade-off of error
+// against time, and a progressively refined reference.
 #pragma once
 
 #include <condition_variable>
@@ -25,18 +25,17 @@ namespace opaline {
 struct BackgroundWork {
   bool trade = false;
   std::optional<Method> reference;     ///< direct or volume
-  std::optional<double> target_error;  ///< settings are chosen for it; relative
+  std::optional<double> target_error;  ///< chooses settings by error; relative
   friend bool operator==(const BackgroundWork&, const BackgroundWork&) = default;
 };
 
-/// How far the reference is.
+/// State of the reference.
 struct ReferenceState {
   std::uint32_t revision = 0;
   Method method = Method::direct;
-  std::size_t samples = 0;  ///< direct: entry samples a pixel; volume: walks a sample
+  std::size_t samples = 0;  ///< direct: entry samples per pixel; volume: walks per sample
   double noise = 0;         ///< relative, rms: direct: of its pixels; volume: of its cells
-  double difference =
-      0;  ///< error_beyond_noise of the final picture's diffuse light, over translucent pixels, or all where the method tells none
+  double difference = 0;    ///< error_beyond_noise of the final diffuse image, over translucent pixels or all
 };
 
 /// State of the error-against-time table of a scene.
@@ -44,15 +43,15 @@ struct TradeState {
   std::uint32_t revision = 0;
   double mm_per_unit = 1;
   std::vector<TradePoint> points;
-  std::optional<std::size_t> now;  ///< the point that the scene's settings are
+  std::optional<std::size_t> now;  ///< point with the scene's settings
   bool is_whole = false;
 };
 
-/// Settings for an error.
+/// Result of choosing settings by error.
 struct ChosenSettings {
   std::uint32_t revision = 0;  ///< revision of their scene
   TargetError outcome;
-  std::vector<std::string> overrides;  ///< as `--set` takes them
+  std::vector<std::string> overrides;  ///< as in `--set`
 };
 
 /// Called on the background's thread.
@@ -63,23 +62,23 @@ struct BackgroundEvents {
   std::function<void(std::uint32_t revision, const std::string& why)> failed;
 };
 
-/// Has a session and a thread to itself, so the pictures a person waits for neither depend on it nor wait for its
-/// end. The session is there only while something is asked for.
+/// Has its own session and thread, so interactive images neither depend on it nor wait for it. The session
+/// exists only while work is requested.
 class ViewBackground {
  public:
   explicit ViewBackground(BackgroundEvents events);
-  /// Cancels what is under way and waits for its end.
+  /// Cancels running work and waits for its end.
   ~ViewBackground();
   ViewBackground(const ViewBackground&) = delete;
   ViewBackground& operator=(const ViewBackground&) = delete;
 
-  /// Changes what is asked for, and starts anew.
+  /// Replaces the requested work, and restarts.
   void ask(const BackgroundWork& work);
 
-  /// The final picture of a scene is there; work on it begins a moment later.
+  /// Notifies of a scene's final image; work on it begins a moment later.
   void start(Scene scene, std::shared_ptr<const ViewPicture> final_picture);
 
-  /// The scene has changed: what is under way is of no more use.
+  /// Cancels running work after a change of the scene.
   void stop();
 
  private:
@@ -101,7 +100,7 @@ class ViewBackground {
   BackgroundEvents events_;
   // Used by the thread only.
   std::unique_ptr<Session> session_;
-  std::optional<Scene> trade_scene_;  ///< that the points are of, whole
+  std::optional<Scene> trade_scene_;  ///< scene of the points, complete
   std::vector<TradePoint> points_;
   DirectState direct_;  ///< sums for the scene of this revision; other requests keep them
   std::uint32_t direct_revision_ = 0;

@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little, "frames are sent as th
 constexpr std::size_t kShown = 4;  // R G B A
 constexpr float kLargestHalf = 65504;
 
-/// As an EXR of halves holds it.
+/// Rounded as in a half-precision EXR.
 half stored(float value) {
   return std::isfinite(value) ? half(std::clamp(value, -kLargestHalf, kLargestHalf)) : half(0.0f);
 }

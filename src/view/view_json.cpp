@@ -23,7 +23,7 @@ constexpr std::array<const char*, 13> kTypeNames{
     "number", "whole_number", "length", "point", "triple", "number_or_triple", "color", "flag",
     "choice", "text",         "text",   "list",  "object"};
 
-/// Ends of a slider: those of the range, or a thousandth inside where the range is without them.
+/// Ends of a slider: those of the range, or a thousandth inside if the range excludes them.
 Json slider_json(const Range& range) {
   constexpr double kWidest = 1e6;  // maximum range of a slider
   const double width = range.high - range.low, inside = width < kWidest ? 1e-3 * width : 0;

@@ -12,37 +12,36 @@
 
 namespace opaline {
 
-/// "schema": the table of keys with unit, range, default, meaning and choices, and the presets of media: what
-/// knobs are made of.
+/// "schema": keys with unit, range, default, meaning and choices, and presets of media, for the knobs.
 std::string schema_text();
 
-/// "scene": all values, the view's own camera, the edits, whether there is a way back, and the frames.
-/// command: that renders the same by the scene's camera.
+/// "scene": all values, the free camera, the edits, availability of undo and redo, and the frames.
+/// command: renders the same from the scene's camera
 std::string scene_text(const SceneEdits& edits, const std::string& command);
 
-/// "plan": what the scene requires, in words.
+/// "plan": requirements of the scene, in words.
 std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan);
 
-/// "report": of a final picture.
+/// "report": on a final image.
 std::string report_text(const ViewReport& report);
 
-/// "behind": what is asked to be worked out behind the final picture.
+/// "behind": requested background work.
 std::string behind_text(const WorkBehind& wanted);
 
-/// "trade": the points so far; each with the values that take it, as `--set` names them.
+/// "trade": the points so far, each with its settings as in `--set`.
 std::string trade_text(const TradeState& trade);
 
-/// "reference": how far it is, and what the final picture differs from it by.
+/// "reference": its progress, and the final image's difference from it.
 std::string reference_text(const ReferenceState& state);
 
-/// "work": which stage is under way, and how much of it is done; the stage is empty while nothing is.
+/// "work": the running stage and its progress; an empty stage if idle.
 std::string work_text(const Monitor& monitor);
 
-/// "failed": a change that has no picture. "told": an answer to one page; `good`: it did what it was asked.
+/// "failed": a change without an image. "told": an answer to one page; `good`: the request succeeded.
 std::string failed_text(std::uint32_t revision, const std::string& why);
 std::string told_text(bool good, const std::string& text);
 
-/// "told": what was chosen for an error.
+/// "told": the settings chosen for an error.
 std::string told_choice(double target, const TargetError& chosen);
 
 }  // namespace opaline

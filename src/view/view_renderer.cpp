@@ -18,10 +18,10 @@
 namespace opaline {
 namespace {
 
-constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: a picture following the hand, its rays
-constexpr double kKnob = .06;                       // s: a picture following a knob
-constexpr double kPatience = .5;                    // s: of what waits, with work following the hand
-constexpr double kLongFinal = .25;                  // s: worth a sharper picture before
+constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: an interactive image, its rays
+constexpr double kKnob = .06;                       // s: an image after turning a knob
+constexpr double kPatience = .5;                    // s: maximum wait for running interactive work
+constexpr double kLongFinal = .25;                  // s: longer final images get a sharper one before
 constexpr int kCoarsest = 16;
 
 std::unique_ptr<Session> new_session() {
@@ -35,7 +35,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The same view in fewer pixels, of one ray each.
+/// The same view in fewer pixels, with one ray each.
 Film coarse_film(Film film, int stride) {
   for (int& side : film.resolution) side = (side + stride - 1) / stride;
   if (film.crop) {
@@ -123,8 +123,8 @@ void ViewRenderer::run() {
   }
 }
 
-/// Frames share samples, as those of `opaline render --frames` do, and with them whatever is equal between them. A new
-/// session where the samples are to be others: an anchor is for good.
+/// Frames share samples, as in `opaline render --frames`, and thereby all results equal between them. Changed
+/// samples need a new session, because anchoring is permanent.
 void ViewRenderer::anchor(const Wanted& wanted) {
   Scene reference = *wanted.reference;
   reference.camera = {};
@@ -179,12 +179,12 @@ void ViewRenderer::draw(const Wanted& wanted) {
   refine(wanted, spent);
 }
 
-/// The last final picture in the light of the scene, where that tells it; null: it does not.
+/// The last final image relit for the scene's lights, if possible; otherwise null.
 std::shared_ptr<const ViewPicture> ViewRenderer::show_lit_anew(const Wanted& wanted, const Spent& spent) {
   if (final_ == nullptr || wanted.scene.settings.method == Method::direct) return nullptr;
   std::optional<LitAnew> lit = lit_anew(final_->image, *final_scene_, wanted.scene);
   if (!lit) return nullptr;
-  // Until one was rendered, nobody knows that it takes long.
+  // The duration of a final render is unknown before the first one.
   const bool is_final = lit->has_one_factor && std::isfinite(spent.final);
   return publish(wanted, is_final ? PictureStep::final : PictureStep::sharper, std::move(lit->image),
                  final_->translucent);
@@ -250,7 +250,7 @@ std::shared_ptr<const ViewPicture> ViewRenderer::publish(const Wanted& wanted, P
 }
 
 void ViewRenderer::report(const Wanted& wanted, const Image& image, double error, StageCost shading) {
-  advance(&monitor_, 0);  // nobody reads it once there is a newer scene
+  advance(&monitor_, 0);  // obsolete once there is a newer scene
   ViewReport report{wanted.revision, error, session_->costs(), session_->decisions(), {}};
   report.costs.push_back(std::move(shading));
   report.warnings = picture_warnings(wanted.scene, session_->world(), image);

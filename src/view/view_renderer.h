@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The newest scene as pictures: a coarse one at once, then sharper ones, on a thread of its own.
+// Progressive images of the newest scene, coarse to final, on a thread of its own.
 #pragma once
 
 #include <array>
@@ -20,16 +20,16 @@
 
 namespace opaline {
 
-/// moving: whatever is there within a thirtieth of a second; sharper: more pixels, the same samples, or the last final
-/// picture in light of another colour (lit_anew.h); final: the bits of `opaline render`, or, where all light is brighter or
-/// darker by one factor and those bits are known to take long, the last final picture times it. reference: of another
-/// method, for comparison (view_background.h).
+/// moving: the result of a thirtieth of a second; sharper: more pixels and the same samples, or the last
+/// final image relit (lit_anew.h); final: the bytes of `opaline render`, or the last final image scaled, if
+/// all lights changed by one factor and a new render takes long. reference: of another method, for comparison
+/// (view_background.h).
 enum class PictureStep : std::uint32_t { moving, sharper, final, reference };
 
 struct ViewPicture {
   std::uint32_t revision = 0;
   PictureStep step = PictureStep::moving;
-  double seconds = 0;                          ///< from the change to this picture
+  double seconds = 0;                          ///< from the edit to this image
   Image image;                                 ///< R G B A first
   std::vector<std::uint8_t> translucent = {};  ///< mask of a final image, as in RenderResult; empty: unknown
 };
@@ -51,27 +51,27 @@ struct ViewEvents {
   std::function<void(std::uint32_t revision, const std::string& why)> failed;
 };
 
-/// error Error{run_failed}: the picture needs more memory than the machine has left
+/// error Error{run_failed}: the image needs more memory than available
 void check_memory(const Plan& plan);
 
 class ViewRenderer {
  public:
   explicit ViewRenderer(ViewEvents events);
-  /// Cancels what is under way and waits for its end.
+  /// Cancels running work and waits for its end.
   ~ViewRenderer();
   ViewRenderer(const ViewRenderer&) = delete;
   ViewRenderer& operator=(const ViewRenderer&) = delete;
 
-  /// Takes the place of a scene that waits, and cancels the pictures of the one under way; what is on its way within
-  /// a frame's time is still shown, so a knob turning without pause shows pictures.
-  /// reference: of a scene with frames, the one whose surfaces all frames' samples are placed on (Session::anchor)
+  /// Replaces a waiting scene, and cancels the images of the current one. An image due within a frame's time
+  /// is still shown, so continuous edits show images.
+  /// reference: for a scene with frames, the scene with the surfaces of all frames' samples (Session::anchor)
   void show(Scene scene, std::uint32_t revision, std::optional<Scene> reference = {});
 
-  /// For whoever shows progress.
+  /// Progress of the current work.
   const Monitor& monitor() const { return monitor_; }
   bool is_drawing();
-  /// Ends work following the hand, which no newer scene cancels, where it takes long and one waits. To be called now
-  /// and then while it draws.
+  /// Ends long interactive work, which newer scenes do not cancel, if a scene waits. Call regularly during
+  /// drawing.
   void end_stale_work();
 
  private:
@@ -82,7 +82,7 @@ class ViewRenderer {
     std::uint32_t revision = 0;
     Clock::time_point since;
   };
-  /// Kind of a change; it decides which stages are computed again.
+  /// Kind of an edit, deciding the stages to recompute.
   enum Change : std::size_t { camera, lights, media, anything, kChanges };
   /// Cost of the last change of each kind, s.
   struct Spent {
@@ -107,7 +107,7 @@ class ViewRenderer {
   ViewEvents events_;
   std::unique_ptr<Session> session_;
   std::optional<Scene> prepared_;
-  std::optional<Scene> anchor_;  ///< that the session is anchored at, without what samples do not depend on
+  std::optional<Scene> anchor_;  ///< scene anchoring the session, without values irrelevant to samples
   std::shared_ptr<const ViewPicture> final_;  ///< the last one, of final_scene_
   std::optional<Scene> final_scene_;
   std::array<Spent, kChanges> spent_;

@@ -38,12 +38,12 @@ using boost::beast::error_code;
 constexpr std::chrono::milliseconds kTick{100};
 constexpr std::size_t kLongestName = 200;
 
-/// A process that renders a file must not keep the server's sockets open.
+/// Closes the server's sockets in child processes rendering a file.
 void close_in_children(int socket) {
   ::fcntl(socket, F_SETFD, FD_CLOEXEC);
 }
 
-/// A file beside the scene. Only files that this server wrote are replaced.
+/// Path of a file beside the scene. Replaces only files written by this server.
 std::string path_beside(const std::string& scene, const std::string& name,
                         const std::vector<std::string>& extensions, const std::set<std::string>& written) {
   const std::filesystem::path file(name);
@@ -176,7 +176,7 @@ PageConnection::Events ViewServer::State::page_events() {
           },
           [this](PageConnection& page, const std::string& why) {
             pages.erase(&page);
-            if (pages.empty()) work_behind({});  // for nobody
+            if (pages.empty()) work_behind({});  // no page needs it
             if (!why.empty()) hooks.refused("a page: " + why);
           }};
 }
@@ -253,7 +253,7 @@ void ViewServer::State::work_behind(const WorkBehind& wanted) {
   tell(PageText::behind, behind_text(wanted));
 }
 
-/// Applies chosen settings as an edit, unless the scene has changed meanwhile: then they are chosen again.
+/// Applies chosen settings as an edit; if the scene has changed meanwhile, chooses again.
 void ViewServer::State::take(const ChosenSettings& chosen) {
   if (chosen.revision != edits.revision() || !asked.target_error) return;
   const double target = *std::exchange(asked.target_error, {});
@@ -281,7 +281,7 @@ void ViewServer::State::after_edit() {
   if (!std::exchange(shows_progress, true)) show_progress();
 }
 
-/// Note on written files that differ from the view.
+/// Note on written files differing from the view.
 std::string ViewServer::State::by_scene_camera() const {
   return edits.own_camera() ? ", with the scene camera" : "";
 }
@@ -320,7 +320,7 @@ void ViewServer::State::render_file(PageConnection& page, const std::string& nam
   page.answer(told_text(true, "rendering " + path + by_scene_camera()));
 }
 
-// ---- the renderer's news, and the clock ------------------------------------------------------------------
+// ---- events of the renderer, and the timer ----------------------------------------------------------------
 
 ViewEvents ViewServer::State::renderer_events() {
   return {[this](std::uint32_t revision, const Scene& scene, const Plan& plan) {
@@ -367,7 +367,7 @@ BackgroundEvents ViewServer::State::background_events() {
           }};
 }
 
-/// Every kTick while pictures are drawn; an idle view does not wake.
+/// Every kTick during drawing; an idle view does not wake up.
 void ViewServer::State::show_progress() {
   renderer->end_stale_work();
   shows_progress = renderer->is_drawing();
@@ -406,7 +406,7 @@ void ViewServer::run() {
   state.background = std::make_unique<ViewBackground>(state.background_events());
   state.after_edit();
   state.accept();
-  // Memory that runs out while one page is served is no end for the others.
+  // Running out of memory while serving one page does not end the others.
   while (!state.io.stopped()) try {
       state.io.run();
     } catch (const std::exception& failure) {

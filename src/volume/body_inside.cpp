@@ -7,14 +7,14 @@
 namespace opaline {
 namespace {
 
-constexpr int kMostSheets = 64;  // that a ray goes through
+constexpr int kMostSheets = 64;  // maximum sheets along a ray
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 TracedRay traced_ray(const Vec3d& from, const Vec3d& direction, double far) {
   return {Ray(Vec3f(from), Vec3f(direction), float(far)), {}};
 }
 
-/// Goes on behind what the ray has met; how far it goes stays.
+/// Continues a ray behind its hit, up to `far`.
 void go_on(TracedRay& traced, double far) {
   traced.ray.near = std::nextafter(traced.ray.far, std::numeric_limits<float>::infinity());
   traced.ray.far = float(far);
@@ -33,8 +33,8 @@ BodyInside::BodyInside(const RayScene& rays, const World& world, std::span<const
   overlaps_ = find_overlaps(world, meshes);
 }
 
-// Meshes whose boxes meet may lie within each other. From some thousand triangles straight into the body: a sheet that is
-// met from outside lies within.
+// True if meshes may overlap: if their boxes intersect, or if a ray into the body, from some thousand
+// triangles, meets the front of another sheet.
 bool BodyInside::find_overlaps(const World& world, std::span<const std::uint32_t> meshes) const {
   constexpr std::size_t kTriangles = 4096;  // maximum triangles of a mesh
   if (boxes_meet(world, meshes)) return true;
@@ -50,7 +50,7 @@ bool BodyInside::find_overlaps(const World& world, std::span<const std::uint32_t
   return false;
 }
 
-// Normals are those of the triangle that the ray met.
+// Boundary point at a hit, with the triangle's normal.
 Wall BodyInside::wall_of(const TracedRay& traced) const {
   const double distance = double(traced.ray.far);
   const Vec3d position = Vec3d(traced.ray.origin) + Vec3d(traced.ray.direction) * distance;
@@ -75,7 +75,7 @@ Wall BodyInside::wall(const Vec3d& from, const Vec3d& direction, double reach) c
   return {};
 }
 
-// Something that touches the body lies at its boundary, and rays may meet either first.
+// Resolves shapes touching the body from outside: rays may meet either first.
 Wall BodyInside::boundary_behind(TracedRay traced, const Wall& other) const {
   const double far = other.distance + 2 * other.point.offset;
   for (int sheets = 0; sheets < 2; ++sheets) {
@@ -87,7 +87,7 @@ Wall BodyInside::boundary_behind(TracedRay traced, const Wall& other) const {
   return other;
 }
 
-// More sheets are left than entered on the way out.
+// True if the ray leaves more sheets than it enters.
 bool BodyInside::contains(const Vec3d& point, const Vec3d& direction) const {
   TracedRay traced = traced_ray(point, direction, kEndless);
   int inside = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The boundary of a body as rays from within it, and from outside, meet it.
+// Boundary of a body, for rays from inside and outside.
 #pragma once
 
 #include <cstdint>
@@ -15,33 +15,32 @@ namespace opaline {
 /// A point of the boundary.
 struct BoundaryPoint {
   Vec3d position, normal;  ///< geometric, unit, out of the body
-  double offset = 0;       ///< how far from it rays start
+  double offset = 0;       ///< distance of ray origins from the surface
 
   Vec3d inside() const { return position - normal * offset; }
   Vec3d outside() const { return position + normal * offset; }
 };
 
-/// Where a ray from inside the body ends.
+/// End of a ray inside the body.
 struct Wall {
   double distance = std::numeric_limits<double>::infinity();
   BoundaryPoint point;
-  bool is_body = false;  ///< or something that stops light
+  bool is_body = false;  ///< false: an absorbing mesh
 };
 
-/// The body is the union of what its closed meshes enclose. Sheets lying inside, where parts overlap or touch,
-/// are no boundary: light goes through.
+/// Union of the body's closed meshes. Sheets inside it, from overlapping or touching parts, are transparent.
 class BodyInside {
  public:
   BodyInside(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes);
 
   const Bounds& box() const { return box_; }
-  /// True if some of the body's sheets lie inside of it.
+  /// True if some of the body's sheets lie inside it.
   bool overlaps() const { return overlaps_; }
 
   /// The first boundary within `reach` along a ray from inside.
   Wall wall(const Vec3d& from, const Vec3d& direction, double reach) const;
 
-  /// Where a ray from outside meets the body, unless something else stops it or it misses.
+  /// Entry point of a ray from outside; none if it misses or is occluded.
   std::optional<BoundaryPoint> entry(const Vec3d& from, const Vec3d& direction) const;
 
   BoundaryPoint at(const SurfacePoint& point) const {

@@ -6,15 +6,15 @@
 namespace opaline {
 namespace {
 
-// In mean free paths; measured in src/volume/README.md.
-constexpr double kReach = 2;         // a boundary beyond is met by chance, not by expectation
-constexpr double kDeep = .5;         // where no surface is nearer than that flights go without a ray
-constexpr double kVoxel = 1;         // edge of FreeDistance's voxels, in the channel where it is least
+// In mean free paths; tuned by bench_walks.
+constexpr double kReach = 2;         // boundaries beyond are met by chance, not by expectation
+constexpr double kDeep = .5;         // at least this far from any surface, flights need no ray
+constexpr double kVoxel = 1;         // edge of FreeDistance's voxels, in the channel with the shortest
 constexpr double kMediumVoxel = .5;  // edge of MediumVoxels' in the mean medium
 constexpr double kLeast = .2;        // Russian roulette below this fraction of the first weight
 constexpr double kOutside = .5;      // the same for a walk leaving
 constexpr std::uint64_t kMostFlights = 1'000'000;
-constexpr int kMostBounces = 16;  // outside, from one place of the body to another
+constexpr int kMostBounces = 16;  // outside, from one point of the body to another
 
 double least_mean_free_path(const std::array<HomogeneousMedium, 3>& media) {
   double least = std::numeric_limits<double>::infinity();
@@ -31,7 +31,7 @@ std::optional<MediumVoxels> voxels_of(const VolumeInput& input, const Bounds& bo
 
 }  // namespace
 
-/// The walks that one start brings about: the first, and those beginning where light enters again.
+/// Walks of one start: the first, and those from re-entries.
 class BodyWalks::Walker {
  public:
   /// weight: of the light arriving
@@ -66,8 +66,8 @@ class BodyWalks::Walker {
   }
 
  private:
-  // Light that has left or was reflected may meet the body again. Its random numbers are its own: where it never
-  // does, the walks are the same without it.
+  // Continues light that has left or was reflected, and may re-enter. Uses its own random numbers: without
+  // re-entry, the walks are unchanged.
   void send_outside(const BoundaryPoint& point, const Vec3d& direction, double weight) {
     if (!body_.input_.reenter) return;
     if (weight < outside_weight_) {
@@ -95,7 +95,7 @@ class BodyWalks::Walker {
     const double least = kLeast * state.weight;
     double albedo = medium_.albedo();
     const bool is_even = medium_.g == 0, may_leap = is_even && !body_.voxels_;
-    bool is_scattered = false;  // just now
+    bool is_scattered = false;  // in this step
     for (std::uint64_t flights = 0; flights < kMostFlights; ++flights) {
       const FreeDistance::Place place = body_.free_.place_of(state.position);
       if (place.is_outside()) break;
@@ -122,23 +122,21 @@ class BodyWalks::Walker {
     counts_.lost += state.weight;
   }
 
-  // Flights are those of the densest place: elsewhere some of their collisions are not real, and the light goes on as if
-  // there had been none (Woodcock et al. 1965).
+  // Delta tracking (Woodcock et al. 1965): flights use the densest medium, and some collisions are null.
   bool is_real_collision(const WalkState& state, double& albedo) {
     const MediumVoxels::Local& local = body_.voxels_->at(state.position, channel_);
     albedo = double(local.albedo);
     return numbers_.next() * sigma_t_ < double(local.sigma_t);
   }
 
-  // True if the flight ends in a collision. Free paths have no memory: one that is longer than `most` goes on from
-  // there.
+  // True if the flight ends in a collision. Free paths are memoryless: beyond `most`, a new flight starts.
   bool fly_free(WalkState& state, double most) {
     const double distance = free_path(numbers_) / sigma_t_;
     state.position += state.direction * std::min(distance, most);
     return distance < most;
   }
 
-  // To the surface of the largest sphere lying inside; whether the walk goes on.
+  // Jumps to the surface of the largest sphere inside the body; returns whether the walk continues.
   bool leap(WalkState& state, double mean_free_paths) {
     std::size_t size = 0;
     while (size + 1 < SphereExits::kSizes && SphereExits::kRadii[size + 1] < mean_free_paths) ++size;
@@ -208,7 +206,7 @@ SphereExits BodyWalks::exits_of(std::size_t pass) const {
   return {std::clamp(starts_ / kStarts, kFewest, kMost), hash_bits(input_.seed + 1, pass)};
 }
 
-// Channels of a light have the starts in common: what differs between them is not their noise.
+// Channels of a light share the starts, so their difference has no noise from them.
 WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chunk,
                            const SphereExits& exits) const {
   WalkCounts counts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random walks inside a body of meshes, counted on the cells of its samples.
+// Random walks inside a body of meshes, collected on the cells of its samples.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace opaline {
 
-/// Walks of one channel and of the light from some lamps.
+/// Walks of one channel, of one light or all.
 struct WalkJob {
   std::span<const Light> lights;
   bool unit_emission = true;
@@ -29,7 +29,7 @@ struct WalkJob {
 
 /// Results of random walks.
 struct WalkCounts {
-  std::vector<float> flux;  ///< one a sample; times area_of_start() it is W
+  std::vector<float> flux;  ///< one per sample; times area_of_start() in W
   double entered = 0, lost = 0, stopped = 0;
 };
 
@@ -42,18 +42,18 @@ class BodyWalks {
   static double expected_bytes(const World& world, std::span<const std::uint32_t> meshes,
                                double mean_free_path);
 
-  /// For all walks of a pass, whatever their light and channel. Each pass has its own, so what is chance in
-  /// them is chance of the pass.
+  /// Sphere exits of a pass, shared by its lights and channels. Each pass has its own, so their error is
+  /// random between passes.
   SphereExits exits_of(std::size_t pass) const;
 
-  /// A pass spreads its starts evenly over the surface. Of them, those of one of kChunks stretches.
+  /// Walks from one of kChunks ranges of a pass's starts, which are spread evenly over the surface.
   /// exits: those of the pass
   WalkCounts walk(const WalkJob& job, std::size_t pass, std::size_t chunk, const SphereExits& exits) const;
   static constexpr std::size_t kChunks = 16;
 
  private:
   class Walker;
-  /// Medium of one channel; where the medium varies, that of the densest place.
+  /// Medium of one channel; the densest of a heterogeneous medium.
   const HomogeneousMedium& medium(std::size_t channel) const {
     return voxels_ ? voxels_->densest(channel) : input_.media[channel];
   }
@@ -61,7 +61,7 @@ class BodyWalks {
   const VolumeInput& input_;
   EvenPoints points_;
   BodyInside inside_;
-  std::optional<MediumVoxels> voxels_;  // none: the medium is one throughout
+  std::optional<MediumVoxels> voxels_;  // none: homogeneous
   FreeDistance free_;
   NearestSample cells_;
   std::size_t starts_;

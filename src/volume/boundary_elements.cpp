@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint32_t kNone = ~0u;
 
-/// Sums of what is merged to one element.
+/// Sums of the parts merged into one element.
 struct ElementSum {
   Vec3d position{}, normal{};  // times area
   double area = 0;
@@ -36,7 +36,7 @@ class ElementTable {
         bricks_(std::size_t(bricks_of_[0]) * std::size_t(bricks_of_[1]) * std::size_t(bricks_of_[2]), kNone) {
   }
 
-  /// Adds to the element of the cell around a place whose sheet it is on, which is made if there is none.
+  /// Adds a part to the element of its cell and sheet, or to a new one; returns the element.
   std::uint32_t add(const Vec3d& position, const Vec3d& normal, double area) {
     check_();
     std::uint32_t& first = head(lattice_->into(position));
@@ -100,7 +100,7 @@ class ElementTable {
   std::vector<ElementSum> sums_;
 };
 
-/// A convex polygon; a triangle that six planes have cut has nine corners at most.
+/// A convex polygon; a triangle clipped by six planes has at most nine corners.
 struct Polygon {
   std::array<Vec3d, 12> corners;
   std::size_t count = 0;
@@ -108,7 +108,7 @@ struct Polygon {
   void add(const Vec3d& corner) { corners[count++] = corner; }
 };
 
-/// Cuts at the planes of integers along an axis and calls found(polygon) for each part.
+/// Clips at the integer planes of an axis and calls found(polygon) for each part.
 template <class Found>
 void cut(Polygon polygon, std::size_t axis, const Found& found) {
   double low = polygon.corners[0][axis], high = low;
@@ -138,7 +138,7 @@ void cut(Polygon polygon, std::size_t axis, const Found& found) {
 struct Part {
   Vec3f position;  // mean
   std::uint32_t mesh, triangle, element;
-  bool is_piece = false;   // beside it the triangle may lie inside the body
+  bool is_piece = false;   // other pieces of its triangle may lie inside the body
   bool is_turned = false;  // its triangle faces into the body
 };
 
@@ -167,7 +167,7 @@ class Cutter {
     }
   }
 
-  /// Leaves out what does not bound the solid. Parts lying beside such a piece are taken in smaller pieces.
+  /// Removes parts not bounding the solid, in smaller pieces around such parts.
   void keep_outer(const RayScene& rays, std::span<const std::uint32_t> meshes) {
     constexpr double kLeastGap = .5;  // cells
     const OuterSurface outer(rays, world_, meshes, kLeastGap * lattice_.cell);
@@ -229,7 +229,7 @@ class Cutter {
     return {int(std::floor(p.x)), int(std::floor(p.y)), int(std::floor(p.z))};
   }
 
-  /// Parts of triangles that a fold has reversed.
+  /// Flags parts of triangles reversed by a fold.
   std::vector<std::uint8_t> reversed_parts(std::span<const std::uint32_t> meshes) const {
     std::vector<std::uint8_t> result(parts_.size());
     std::set<std::array<std::uint32_t, 2>> reversed;
@@ -240,13 +240,14 @@ class Cutter {
     return result;
   }
 
-  /// Parts in the cells of pieces that are no plain boundary or reversed, and in the cells around; empty: there is none.
+  /// Flags parts in and around cells with a reversed piece or one that is not a plain boundary; empty: there
+  /// is none.
   std::vector<bool> folded_parts(const OuterSurface& outer, std::span<const std::uint32_t> meshes) const {
     const auto piece_of = [&](std::size_t i) -> BoundaryPiece {
       const Part& part = parts_[i];
       return {part.position, unit_normal(part.mesh, part.triangle), part.mesh, part.triangle};
     };
-    const bool has_inner = outer.has_inner(parts_.size(), piece_of);  // else folds at the most
+    const bool has_inner = outer.has_inner(parts_.size(), piece_of);  // false: at most folds
     std::vector<std::uint8_t> is_folded = reversed_parts(meshes);
     parallel_chunks(parts_.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i)
@@ -291,8 +292,8 @@ class Cutter {
     parts_.push_back({Vec3f(position), mesh, triangle, element, true, is_turned});
   }
 
-  // Part of each element nearest to its centre; transmitted light uses the triangle's normal, so a flipped triangle
-  // represents the element only without an alternative.
+  // Part of each element nearest to its centre; transmitted light uses the triangle's normal, so a flipped
+  // triangle represents the element only without an alternative.
   std::vector<const Part*> middles_of(std::span<const BoundaryElement> elements) const {
     std::vector<const Part*> middles(elements.size());
     std::vector<float> distances(elements.size(), INFINITY);
@@ -307,7 +308,7 @@ class Cutter {
     return middles;
   }
 
-  // On the part's triangle: under the element's middle, or in that of the part.
+  // Sample on the part's triangle, at the projection of the element's centroid, or of the part's.
   SurfaceSample sample_of(const BoundaryElement& element, const Part& part) const {
     const Mesh& mesh = world_.meshes[part.mesh];
     const auto& [i, j, k] = mesh.triangles[part.triangle];
@@ -331,8 +332,7 @@ class Cutter {
   const Lattice& lattice_;
   ElementTable table_;
   std::vector<Part> parts_;
-  const OuterSurface* outer_ =
-      nullptr;  // the second time that parts are cut, and which of them are taken in pieces:
+  const OuterSurface* outer_ = nullptr;  // second cut, in pieces where flagged:
   const std::vector<bool>* is_folded_ = nullptr;
   std::size_t next_ = 0;
 };

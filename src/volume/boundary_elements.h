@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body's surface, cut by the cells of a lattice: what the cells exchange with the outside.
+// Surface of a body cut by a lattice: its exchange of light with the cells.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@
 
 namespace opaline {
 
-/// The surface in one lattice cell, as far as its normals agree and it is one sheet: one plane.
+/// Surface in one lattice cell, on one sheet with similar normals: a plane.
 struct BoundaryElement {
   Vec3f position;  ///< mean, world units
   Vec3f normal;    ///< geometric, outward
   float area = 0;
 };
 
-/// A body's elements, and the one that each sample lies in.
+/// Elements of a body, and the element of each sample.
 struct Boundary {
   std::vector<BoundaryElement> elements;
   std::vector<std::uint32_t> of_sample;
 };
 
-/// Triangles clipped at the planes of the lattice, so each cell has the area that is in it.
-/// rays: of the world; pieces that do not bound the solid are left out (OuterSurface). Null: every piece counts
+/// Clips triangles at the planes of the lattice, so each cell has its exact area.
+/// rays: of the world; removes pieces not bounding the solid (OuterSurface). Null: keeps all
 CutSurface cut_by_lattice(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,
                           const RayScene* rays);
 

@@ -14,7 +14,7 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kFactors = 33;
-constexpr double kMostAlbedo = 1 - 1e-9;  // beyond, shares are 1 to rounding, whatever the boundary
+constexpr double kMostAlbedo = 1 - 1e-9;  // beyond, fractions are 1 to rounding for any boundary
 
 }  // namespace
 
@@ -25,7 +25,7 @@ CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium)
   const double used = std::min(albedo, kMostAlbedo);
   const double decay = std::sqrt(3 * (1 - used));  // per mean free path
   const HalfSpace exact(1 - used, eta);
-  // Mean of 1 / (1 + decay cosine) over light from all directions, by cosines outside.
+  // Mean of 1 / (1 + decay cosine) over uniform incident light, by cosines outside.
   const auto entering = [&](double outside) { return outside * (1 - fresnel_reflectance(outside, eta)); };
   const auto spread = [&](double outside) {
     return entering(outside) / (1 + decay * refracted_cosine(outside, 1 / eta));

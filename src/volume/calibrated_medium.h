@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A medium as diffusion sees it, with a boundary that gives a half space the fraction of light that transport gives.
+// Diffusion medium with a boundary calibrated to the total diffuse reflectance of a half space.
 #pragma once
 
 #include <memory>
@@ -34,9 +34,9 @@ struct CalibratedMedium {
   std::shared_ptr<const std::vector<double>> factors_;  // at cosines from least_cosine_ to 1, evenly
 };
 
-/// Media of one eta whose 1 - albedo is the square of 0 to 1, evenly.
+/// Media of one eta with sqrt(1 - albedo) uniform over 0 to 1.
 std::vector<CalibratedMedium> calibrations_of(double eta);
-/// A medium of that eta, by the calibration whose albedo is nearest.
+/// Medium by the calibration of nearest albedo, with the same eta.
 CalibratedMedium calibrated(const HomogeneousMedium& medium, std::span<const CalibratedMedium> calibrations);
 
 }  // namespace opaline

@@ -12,18 +12,18 @@
 namespace opaline {
 namespace {
 
-// Measured on smooth fields without noise and with (src/volume/README.md).
+// Tuned on smooth fields with and without noise (src/volume/README.md).
 constexpr float kFitRadius = 2.6f, kBlendRadius = 1.2f, kSurpriseRadius = 2.4f;  // spacings
-// Spacings: a reader's cells serve points that far off; those that are expected, at most; and what is added for rounding.
+// Spacings: radius around the centre with cached cells; largest radius of expected points; margin for
+// rounding.
 constexpr float kTakenBeyond = .5f, kFarthestTaken = 1.5f, kRounding = 1e-3f;
 constexpr int kSurpriseRounds = 3;
-constexpr float kCube =
-    2.6f;  // spacings: against 1, three quarters of the time on the bunny; above 2 all alike
+constexpr float kCube = 2.6f;  // spacings; tuned by bench_cell_fit
 constexpr double kShapePerSurprise = 1.4;
-constexpr float kBlendedNoise = .9f;  ///< over that of one fit
-constexpr float kLeastCosine = .4f;   // between normals that have to do with each other
-/// Mean square, along any axis, of a cell's points about its middle, over its area: of a hexagon .0802, of a
-/// square .0833.
+constexpr float kBlendedNoise = .9f;  ///< noise of blended fits over that of one
+constexpr float kLeastCosine = .4f;   // least cosine between the normals of neighbours
+/// Second moment of a cell along an axis, over its squared area: between a hexagon (0.0802) and a square
+/// (0.0833).
 constexpr double kCellMoment = .0815;
 
 constexpr std::size_t kTerms = 6;
@@ -42,7 +42,7 @@ double bump(const Vec3f& apart, float radius) {
   return left * left;
 }
 
-/// Symmetric and positive.
+/// Symmetric, positive definite.
 class NormalEquations {
  public:
   void add(const Terms& terms, double weight) {
@@ -50,7 +50,8 @@ class NormalEquations {
       for (std::size_t j = 0; j <= i; ++j) rows_[i][j] += weight * terms[i] * terms[j];
   }
 
-  /// Cholesky, in place. What few neighbours, or neighbours in a row, leave open becomes 0.
+  /// Cholesky factorization, in place. Regularized: coefficients not determined by few or collinear
+  /// neighbours become 0.
   void factor() {
     constexpr double kLeastSlope = 1e-4, kLeastCurvature = 1e-3;
     for (std::size_t i = 1; i < kTerms; ++i) rows_[i][i] += i < 3 ? kLeastSlope : kLeastCurvature;
@@ -78,16 +79,16 @@ class NormalEquations {
   std::array<Terms, kTerms> rows_{};
 };
 
-/// A mean that a cell's quadratic is fitted to.
+/// A mean in the fit of a cell's quadratic.
 struct FittedMean {
   std::uint32_t sample;
   double weight;
-  Terms terms;  ///< means over its cell
+  Terms terms;  ///< averaged over its cell
 };
 
 constexpr std::size_t kChunk = 256;  // cells
 
-/// Centroids in place of positions.
+/// Centroids instead of positions.
 std::vector<SurfaceSample> at_centroids(std::span<const SurfaceSample> samples) {
   std::vector<SurfaceSample> moved(samples.begin(), samples.end());
   for (SurfaceSample& s : moved) s.position = s.centroid;
@@ -116,7 +117,8 @@ CellWeights::CellWeights(std::span<const SurfaceSample> samples)
   });
 }
 
-// Least squares, neighbours weighted by area: the inverse of the normal equations times what each mean adds to them.
+// Least squares with neighbours weighted by area: the inverse of the normal equations, times the contribution
+// of each mean.
 CellWeights::Chunk CellWeights::chunk_of(const Places& places, std::span<const SurfaceSample> samples,
                                          std::size_t begin, std::size_t end) {
   const float radius = kFitRadius * places.spacing;
@@ -186,11 +188,11 @@ CellFit::CellFit(const CellWeights& weights, std::span<const RgbF> means, std::s
   smooth(weights.chunks_, std::move(surprises));
 }
 
-// The surprise is the square of what the fit's mean over the cell misses of the cell's mean, less what the means' errors
-// make of it on average.
+// Fits the quadratics. A cell's surprise is its squared residual, minus the expectation from the means'
+// errors.
 void CellFit::fit(const CellWeights::Chunk& chunk, std::size_t begin, std::span<const RgbF> means,
                   std::span<const RgbF> errors, std::span<Rgb> surprises) {
-  const auto add_square = [](Rgb& sum, const Channels& channels) {  // in double: it leaves a float's range
+  const auto add_square = [](Rgb& sum, const Channels& channels) {  // in double: exceeds the range of float
     for (int c = 0; c < 3; ++c) sum[std::size_t(c)] += double(channels[c]) * double(channels[c]);
   };
   const std::span<const NearestSample::Member> members = places_->middles.members();
@@ -220,7 +222,8 @@ void CellFit::fit(const CellWeights::Chunk& chunk, std::size_t begin, std::span<
   }
 }
 
-// That of one cell is mostly chance. Means of means reach as far as a wide one, past fewer cells.
+// Smooths the surprises, as single ones are mostly noise. Repeated averaging equals a wide kernel, but visits
+// fewer cells.
 void CellFit::smooth(std::span<const CellWeights::Chunk> chunks, std::vector<Rgb> surprises) {
   const std::span<const NearestSample::Member> members = places_->middles.members();
   std::vector<Rgb> smoothed(surprises.size());
@@ -255,7 +258,8 @@ void CellFit::Reader::expect(std::span<const Vec3f> positions) {
   if (beyond <= kFarthestTaken) take_around((low + high) * .5f, beyond);
 }
 
-// In the order of the cubes that they lie in, whatever point they are taken around: sums have the same bits.
+// Caches the cells around a position in the order of their cubes, independent of the position, so sums have
+// the same bits.
 void CellFit::Reader::take_around(const Vec3f& position, float beyond) {
   taken_ = position, beyond_ = beyond;
   near_.clear();
@@ -265,7 +269,7 @@ void CellFit::Reader::take_around(const Vec3f& position, float beyond) {
     const Vec3f apart = member.position - position;
     if (dot(apart, apart) < radius2) near_.push_back(std::uint32_t(&member - members.data()));
   });
-  fours_.assign((near_.size() + 3) / 4, {});  // those past the last have no normal: their weight is 0
+  fours_.assign((near_.size() + 3) / 4, {});  // padding has zero normals, hence weight 0
   weighed_.resize(fours_.size());
   blended_.resize(4 * fours_.size() + 1);
   for (std::size_t i = 0; i < near_.size(); ++i)
@@ -289,7 +293,7 @@ CellFit::Value CellFit::Reader::at(const Vec3f& position, const Vec3f& normal) {
                turned = other[0] * normal.x + other[1] * normal.y + other[2] * normal.z - kLeastCosine;
     weighed_[four] = {{x, y, z}, left * left * turned};
     const auto counts = (left > 0) & (turned > 0);  // -1 or 0
-    for (std::size_t lane = 0; lane < 4; ++lane) {  // without a branch, which would be a guess
+    for (std::size_t lane = 0; lane < 4; ++lane) {  // branchless: the branch is unpredictable
       blended_[count] = std::uint32_t(4 * four + lane);
       count += std::size_t(-counts[lane]);
     }

@@ -11,7 +11,7 @@ constexpr double kLeast = .001;  // minimum component of a normal; it is a divis
 
 }  // namespace
 
-// The simplex that the plane cuts off the octant at the lowest corner, without those at the other corners.
+// Simplex cut off the lowest corner by the plane, minus those outside the cube.
 PartOfCube part_behind(const Vec3d& normal, double height) {
   std::array<double, 3> m{};
   for (std::size_t axis = 0; axis < 3; ++axis) m[axis] = std::max(kLeast, std::abs(normal[axis]));

@@ -149,8 +149,8 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
   return solution;
 }
 
-// The fluence beside a sample, under it as deep as the cell's centre, through the resistances from there to the outside.
-// All samples together let out what all cells lose.
+// Exitance at the samples: fluence under a sample, at the depth of its cell's centre, times the conductance
+// to the outside. Normalized so the samples emit exactly the loss of all cells.
 std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
                                       std::span<const RgbF> leaving) const {
   struct Plane {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body's cells and boundary, ready for any light.
+// Cells and boundary of a body, prepared for any light.
 #pragma once
 
 #include <array>
@@ -12,30 +12,30 @@
 
 namespace opaline {
 
-/// A lattice around a body whose cells may be merged by eights.
+/// Lattice around a body, with cells mergeable by eights.
 /// cell: their edge, world units
 Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell);
 
 /// Media of a body.
 struct BodyMedia {
   std::array<std::array<CalibratedMedium, 3>, 1> throughout;
-  MediaInside inside;                          ///< instead; empty: one medium throughout
-  std::vector<CalibratedMedium> calibrations;  ///< for these
+  MediaInside inside;                          ///< heterogeneous media; empty: homogeneous
+  std::vector<CalibratedMedium> calibrations;  ///< for heterogeneous media
 };
 
-/// Cells of one size at the surface. Holds on to `samples` and `media`.
+/// Cells of one size at the surface. References `samples` and `media`.
 class DiffusionBody {
  public:
-  /// in    samples: elements of this lattice's cells, or of cells that divide them
+  /// in    samples: elements of this lattice's cells, or of smaller ones dividing them
   DiffusionBody(const World& world, std::span<const std::uint32_t> meshes,
                 std::span<const BoundaryElement> samples, const BodyMedia& media, const Lattice& lattice);
 
-  /// The fluence in the cells, and what leaves at the samples, W per square of the world's unit.
+  /// Fluence of the cells, and exitance at the samples, W per square of the world's unit.
   struct Solution {
     std::vector<Channels> fluence;
     std::vector<RgbF> exitance;
   };
-  /// start: the fluence to begin with, or empty
+  /// start: initial guess of the fluence, or empty
   Solution solve(const EnteringLight& light, std::vector<Channels> start, Monitor* monitor) const;
 
   /// A solution's fluence at the centres of another body's cells.
@@ -58,7 +58,7 @@ class DiffusionBody {
   Lattice lattice_;
   Boundary boundary_;
   DiffusionGrid grid_;
-  std::vector<std::array<CalibratedMedium, 3>> of_cells_;  // where the medium varies
+  std::vector<std::array<CalibratedMedium, 3>> of_cells_;  // only in a heterogeneous medium
   std::vector<AttachedElement> attached_;                  // one an element
 };
 

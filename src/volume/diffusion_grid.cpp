@@ -11,7 +11,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeastVolume = .05;    // least volume of a lattice cell: what is less belongs to no cell
+constexpr double kLeastVolume = .05;    // least volume of a lattice cell; smaller ones are dropped
 constexpr double kLeastDistance = .25;  // least distance of two centres
 constexpr float kLeastAcross = 1e-6f;   // squared; less is rounding
 constexpr std::array<double, 3> kThirds{.25, .5, .25};  // trapezoids through three lines
@@ -31,7 +31,7 @@ class Flags {
     for_each([&](int i, int j, int k) { result.set(i / 2, j / 2, k / 2); });
     return result;
   }
-  /// With all 26 neighbours of each.
+  /// Includes all 26 neighbours.
   Flags widened() const {
     Flags result(n_[0], n_[1], n_[2]);
     for_each([&](int i, int j, int k) {
@@ -59,7 +59,7 @@ class Flags {
   std::vector<std::uint8_t> flags_;
 };
 
-/// Which cells of size 2 the surface meets.
+/// Cells of size 2 crossed by the surface.
 Flags met_by_surface(const InsideLines& lines, const Lattice& lattice,
                      std::span<const DiffusionGrid::Facet> surface) {
   Flags met(lattice.nx / 2, lattice.ny / 2, lattice.nz / 2);
@@ -88,7 +88,7 @@ struct DiffusionGrid::Builder {
     double height = 0;  // over the cell's middle
   };
 
-  // `size` cells along each side from (i, j, k) on; divided where the surface is near.
+  // Adds a cell of this size at (i, j, k), divided near the surface.
   void fill(int i, int j, int k, int size) {
     check();
     if (size == 1) return fill_one(i, j, k);
@@ -146,8 +146,8 @@ struct DiffusionGrid::Builder {
                                     ((corner[0] + x) & 7))] = index;
   }
 
-  // Lines tell how much of a cell is inside to a quarter where the surface runs along them. Where it is one plane, its
-  // facets tell it exactly.
+  // Volume of a cell inside the body. Lines have a resolution of a quarter cell for surfaces parallel to
+  // them; a plane through the facets is exact.
   void weigh_by_planes(std::span<const Facet> surface) {
     constexpr double kLeastAgreement = .97;  // least agreement of the facets' normals
     std::vector<Plane> sums(grid.cells_.size());
@@ -179,7 +179,7 @@ struct DiffusionGrid::Builder {
   }
   int size_of(std::uint32_t cell) const { return grid.cells_[cell].size; }
 
-  // Aperture of a lattice face between two cells, how much is inside: behind the planes of both, if they have one.
+  // Aperture of a lattice face, its fraction inside: behind the planes of both cells, where they have one.
   // in    corner: of the lattice cell above the face
   double aperture(std::uint32_t below, std::uint32_t above, const std::array<int, 3>& corner,
                   std::size_t axis) const {
@@ -195,7 +195,7 @@ struct DiffusionGrid::Builder {
     return aperture_by_lines(corner[0], corner[1], corner[2], int(axis));
   }
 
-  // Fraction of the lattice face below (i, j, k) along an axis that is inside.
+  // Aperture of the lattice face below (i, j, k) along an axis, from the lines.
   double aperture_by_lines(int i, int j, int k, int axis) const {
     double sum = 0;
     for (std::size_t n = 0; n < 3; ++n) {
@@ -232,8 +232,8 @@ struct DiffusionGrid::Builder {
     float conductance;
   };
 
-  // Between the small cells at one side of a larger one: the flow through that side is that of their mean fluence. Each
-  // for itself they would lead light along the side, through the larger cell.
+  // Couples the small cells on one side of a larger one, so the flux through that side depends on their mean
+  // fluence. Uncoupled, they would conduct light along the side through the larger cell.
   void link_across(std::uint32_t cell, std::size_t axis, int step, std::vector<Pair>& pairs) const {
     const int size = size_of(cell), half = size / 2;
     std::array<std::uint32_t, 4> others;
@@ -252,9 +252,9 @@ struct DiffusionGrid::Builder {
         pairs.push_back({others[i], others[j], -float(half * half / (.75 * size * double(count)))});
   }
 
-  // Light that fades between two centres flows as at their middle, which lies within the larger cell. Of what lies between
-  // there and the face one half is given to the smaller cell: then what a half space returns is right to second order.
-  // All of it gives as great an error as nothing, of the other sign.
+  // Links neighbouring cells. The flux of decaying light is that at the midpoint of two centres, inside the
+  // larger cell. Half of the volume between midpoint and face moves to the smaller cell: the reflectance of a
+  // half space is then second-order accurate.
   void link() {
     std::vector<Pair> pairs;
     std::vector<float> given(grid.cells_.size());
@@ -298,9 +298,9 @@ struct DiffusionGrid::Builder {
   DiffusionGrid& grid;
   const InsideLines& lines;
   std::vector<Flags> levels;                 // cells of sizes 2, 4, 8 to divide
-  std::size_t brick = 0;                     // under way
+  std::size_t brick = 0;                     // current
   std::vector<std::array<int, 3>> corners;   // corners of the cells
-  std::vector<std::optional<Plane>> planes;  // planes of the cells that have just one
+  std::vector<std::optional<Plane>> planes;  // planes of the cells with exactly one
 };
 
 DiffusionGrid::DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Facet> surface)

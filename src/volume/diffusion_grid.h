@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells filling a body: small ones at its surface, larger ones further in.
+// Cells filling a body: small at its surface, larger further in.
 #pragma once
 
 #include <array>
@@ -11,29 +11,30 @@
 
 namespace opaline {
 
-/// Cells of 1, 2, 4 and 8 lattice cells; a cell has none of less than half its size beside it. Those that the
-/// surface cuts are of size 1, with the fraction of their volume and of their faces that is inside.
+/// Octree-like grid of cells of 1, 2, 4 and 8 lattice cells; sizes of neighbours differ by at most a factor
+/// of two. Cells cut by the surface have size 1, with the fractions of their volume and faces inside the
+/// body.
 class DiffusionGrid {
  public:
   static constexpr std::uint32_t kNone = ~0u;
   static constexpr int kLargest = 8;
 
   struct Cell {
-    Vec3f centre;      ///< centre of what is inside, lattice units, as all here
-    float volume = 0;  ///< that loses light as its centre does
+    Vec3f centre;      ///< centroid of the part inside, lattice units, as all here
+    float volume = 0;  ///< effective volume for absorption at the centre's fluence
     int size = 1;      ///< size of its edge
   };
-  /// To a neighbour. Both cells have one.
+  /// Link to a neighbour; both cells have one.
   struct Link {
     std::uint32_t to;
     float conductance;  ///< area of the common face over the distance of the centres
   };
 
-  /// Between two cells of size 1 whose centres do not face each other.
+  /// Link of two cells of size 1 with laterally offset centres.
   struct ObliqueLink {
     std::uint32_t a, b;
     float conductance;
-    Vec3f across;  ///< from a's centre to b's, along their common face
+    Vec3f across;  ///< from a's centre to b's, tangential to their face
   };
 
   /// Facet of the surface in one cell: its middle, its normal, outward, and its area, of any unit.
@@ -42,7 +43,7 @@ class DiffusionGrid {
     float area;
   };
 
-  /// in    surface: every lattice cell that the surface meets has a facet
+  /// in    surface: one facet for every lattice cell crossed by the surface
   ///       lattice: nx, ny, nz multiples of kLargest
   DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Facet> surface);
 
@@ -58,7 +59,7 @@ class DiffusionGrid {
 
  private:
   struct Builder;
-  static constexpr std::uint32_t kWhole = 0x80000000u;  // a brick that is one cell
+  static constexpr std::uint32_t kWhole = 0x80000000u;  // a brick of one cell
 
   std::uint32_t at(int i, int j, int k) const;
 

@@ -84,7 +84,7 @@ class ConjugateGradients {
     });
   }
 
-  /// The solution, scaled so that all that comes in is lost.
+  /// The solution, scaled to conserve energy: total loss equals total source.
   std::vector<Channels> take() {
     const Sums lost = sum([&](std::size_t i, Sums& sums) {
       for (std::size_t c = 0; c < 4; ++c) sums[c] += double(problem_.loss[i].c[c]) * double(x_[i].c[c]);
@@ -101,7 +101,7 @@ class ConjugateGradients {
   }
 
  private:
-  // Where the diffusivity differs from cell to cell it is in them, and 1 otherwise.
+  // A variable diffusivity is included in the conductances; a constant one is 1 here.
   void weigh_links() {
     const DiffusionGrid& grid = problem_.grid;
     diffusivity_.c.fill(1);
@@ -164,7 +164,7 @@ class ConjugateGradients {
   const DiffusionProblem& problem_;
   std::size_t count_;
   Channels diffusivity_;
-  std::vector<Channels> conductances_;  // one a link of the grid, or none
+  std::vector<Channels> conductances_;  // one per link of the grid, or none
   std::vector<Channels> x_, residual_, inverse_, direction_, product_;
   Sums squared_{}, source_{};  // norms of the residual and of the source
 };

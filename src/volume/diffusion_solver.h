@@ -11,30 +11,31 @@
 
 namespace opaline {
 
-/// R G B and a fourth, unused, that makes them one vector of the machine.
+/// R G B and an unused fourth, filling a vector register.
 struct alignas(16) Channels {
   std::array<float, 4> c{};
 };
 
-/// For each cell: sum over links of diffusivity x conductance x (own - other's fluence) + loss x fluence = source.
+/// For each cell: sum over links of diffusivity x conductance x (own - other's fluence) + loss x fluence =
+/// source.
 struct DiffusionProblem {
   const DiffusionGrid& grid;
   std::array<float, 3> diffusivity{};
-  std::vector<Channels> loss;                ///< one a cell, >= 0
-  std::vector<Channels> source;              ///< one a cell
-  std::vector<Channels> diffusivities = {};  ///< one a cell, > 0; empty: `diffusivity` everywhere
+  std::vector<Channels> loss;                ///< one per cell, >= 0
+  std::vector<Channels> source;              ///< one per cell
+  std::vector<Channels> diffusivities = {};  ///< one per cell, > 0; empty: `diffusivity` everywhere
 
   /// Coefficient between two cells' centres: half of the distance belongs to each, by their sizes.
   Channels between(std::uint32_t a, std::uint32_t b) const;
 };
 
 struct DiffusionSolution {
-  std::vector<Channels> fluence;  ///< one a cell
+  std::vector<Channels> fluence;  ///< one per cell
   int iterations = 0;
 };
 
-/// Conjugate gradients, preconditioned by the diagonal: on cells that grow inwards a step reaches far.
-/// in    start: a guess, empty or one a cell
+/// Conjugate gradients with a Jacobi preconditioner; few iterations suffice on cells growing inwards.
+/// in    start: initial guess, empty or one per cell
 ///       tolerance: of the residual, in the norm of the inverse diagonal, over that of the source
 /// out   losses and sources balance to rounding; the same bits for any number of threads
 /// error Error{interrupted}

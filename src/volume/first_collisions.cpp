@@ -14,20 +14,20 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeastCosine = 1e-3;   // least cosine of light inside: against division by 0 where eta < 1
+constexpr double kLeastCosine = 1e-3;   // least cosine of light inside, avoiding division by 0 for eta < 1
 constexpr double kSpread = 1.2;         // cells around an exit
 constexpr double kLeastAgreement = .5;  // least agreement of normals of one sheet
-constexpr double kFarthest = 5;         // free paths; what goes farther ends there
+constexpr double kFarthest = 5;         // free paths; longer flights end there
 constexpr double kStep = .4;            // cells
 
-// Evenly over [0, 1).
+// Additive recurrence with the golden ratio in [0, 1).
 double golden_point(std::size_t i) {
   const double turns = .5 + .6180339887498949 * double(i);
   return turns - std::floor(turns);
 }
 
-constexpr std::size_t kDirections = 8;  // towards what is no point
-constexpr std::size_t kAllAround = 3;   // directions of uniform light; neighbours use others
+constexpr std::size_t kDirections = 8;  // per light that is not a point
+constexpr std::size_t kAllAround = 3;   // directions of uniform light, different at neighbouring elements
 
 /// Incident directions with their fractions of the transmitted flux.
 struct Directions {
@@ -115,23 +115,24 @@ class Depositor {
   FirstCollisions take() { return std::move(result_); }
 
  private:
-  /// A straight way inside, in lattice units; lengths in world units.
+  /// Straight path inside the body, in lattice units; lengths in world units.
   struct Way {
     Vec3d from, along;
   };
-  /// Where a way leaves the body.
+  /// Exit of a path from the body.
   struct Exit {
     double length;
     std::uint32_t element;  // nearest boundary element
-    std::uint32_t cell;     // the last
+    std::uint32_t cell;     // last cell
   };
   Vec3d at(const Way& way, double length) const {
     return way.from + way.along * (length / space_.lattice.cell);
   }
-  /// A stretch of a way within a cell: what collides in it, of what comes to it, and how far in, on average, by channel.
+  /// Segment of a path within a cell, per channel: fraction of the arriving flux colliding in it, and mean
+  /// distance of collisions.
   struct Stretch {
     double length = 0;
-    std::array<double, 3> share{}, middle{}, scattered{};  // scattered: of what collides
+    std::array<double, 3> share{}, middle{}, scattered{};  // scattered: fraction of the collisions
   };
   // Scattered fraction of a collision. In a homogeneous medium, absorption is applied at the entry instead.
   double scattered_of(const CalibratedMedium& medium) const { return space_.varies() ? medium.albedo : 1; }
@@ -158,7 +159,7 @@ class Depositor {
   };
   std::vector<Share> spread_;  // spread of the current exit
   double longest_ = 0;         // free path
-  Stretch step_;               // in the smallest cells, where the medium is the same in all
+  Stretch step_;               // smallest cells, in a homogeneous medium
   FirstCollisions result_;
 };
 
@@ -175,8 +176,9 @@ Depositor::Stretch Depositor::stretch_of(double length, std::uint32_t cell) cons
   return stretch;
 }
 
-// The plane of the boundary element nearest to where a way, that was in the cell `last` at `least`, has left the body by
-// `length`: it has come to no cell, or behind a plane in the one that it has come to, `next`.
+// Exit through the plane of the nearest boundary element, if the path leaves the body between `least`, in the
+// cell `last`, and `length`: if there is no cell at `length` (`next` is none), or if it is behind an
+// element's plane in `next`.
 std::optional<Depositor::Exit> Depositor::exit_at(const Way& way, double length, double least,
                                                   std::uint32_t last, std::uint32_t next) const {
   const double cell = space_.lattice.cell;
@@ -202,8 +204,8 @@ std::optional<Depositor::Exit> Depositor::exit_at(const Way& way, double length,
   return exit;
 }
 
-// Collisions along a way that is inside at `start`, in steps of less than a cell, through larger cells, which lie as deep
-// as they are large, of their edge. Leaves in flux what comes to the exit.
+// Deposits the collisions along a path from `start`, by steps below a cell, or about the edge of larger
+// cells, which lie deeper. Returns the exit, with the remaining flux in `flux`.
 std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, std::uint32_t first,
                                                   Rgb& flux) {
   const double farthest = start + kFarthest * longest_;
@@ -242,7 +244,7 @@ void Depositor::deposit(const Way& way, double start, const Stretch& stretch, st
   deposit(collided, at(way, start + .5 * stretch.length), fallback);
 }
 
-// In the cells around a place, by linear interpolation: the cell that it is in and its neighbours towards it.
+// Deposits by linear interpolation between the cell at a position and its neighbours on the nearer sides.
 void Depositor::deposit(const Collided& collided, const Vec3d& about, std::uint32_t fallback) {
   const Vec3f place(about);
   const std::uint32_t found = space_.grid.at(place);
@@ -276,7 +278,7 @@ void Depositor::deposit(const Vec3d& place, std::uint32_t fallback, std::size_t 
   deposit(collided, place, fallback);
 }
 
-// The elements around a way's exit, each with its share per area of what leaves: a ray stands for those through a cell's
+// Distributes a path's exit over the elements around it, by weights per area: one ray represents a whole cell
 // face.
 void Depositor::spread(const Vec3d& at, const Exit& exit) {
   spread_.clear();
@@ -301,7 +303,8 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
   for (Share& share : spread_) share.per_area /= sum;
 }
 
-// Reflected light collides on its further path, which is assumed to be inside.
+// Splits the flux at an exit: the transmitted part leaves; the reflected part collides on its further path,
+// assumed to be inside.
 void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, const Rgb& flux) {
   const Vec3d normal(space_.boundary.elements[exit.element].normal), place = at(way, exit.length);
   const double reflectance =
@@ -318,8 +321,8 @@ void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, const Rgb
   }
 }
 
-// Light transmitted at an element from one direction: what collides between the element and the centre of its cell leaves in
-// part at once, as between two resistances; the rest goes on.
+// Light transmitted at an element from one direction. Collisions above the centre of the element's cell
+// partly leave at once, as a current divided by two resistances; the rest continues.
 void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) {
   const BoundaryElement& element = space_.boundary.elements[i];
   const AttachedElement& attached = space_.attached[i];

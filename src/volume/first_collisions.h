@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where light entering a body collides for the first time, or leaves it without a collision.
+// First collisions of light entering a body, and light crossing it without collision.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@ namespace opaline {
 /// Transmitted light at the samples, from lights or uniform.
 struct EnteringLight {
   std::span<const Light> lights;             ///< recentred
-  std::span<const LightTransfer> transfers;  ///< one a light
-  std::span<const RgbF> tints;               ///< factors, one a sample; empty: none
-  std::span<const RgbF> even = {};           ///< from all sides alike, W per area, one a sample; empty: none
+  std::span<const LightTransfer> transfers;  ///< one per light
+  std::span<const RgbF> tints;               ///< factors, one per sample; empty: none
+  std::span<const RgbF> even = {};           ///< uniform, W per area, one per sample; empty: none
 };
 
 /// A boundary element's cell.
@@ -34,7 +34,7 @@ struct AttachedElement {
 struct DiffusionSpace {
   const Lattice& lattice;
   const DiffusionGrid& grid;
-  std::span<const std::array<CalibratedMedium, 3>> media;  ///< one for all cells, or one a cell
+  std::span<const std::array<CalibratedMedium, 3>> media;  ///< one for all cells, or one per cell
   const Boundary& boundary;
   std::span<const BoundaryElement> samples;
   std::span<const AttachedElement> attached;  ///< one an element
@@ -47,7 +47,7 @@ struct DiffusionSpace {
   Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }
 };
 
-/// Flux by cell, and what leaves at each element at once, per area.
+/// Flux by cell, and uncollided or immediately leaving exitance by element.
 struct FirstCollisions {
   std::vector<Channels> source;
   std::vector<RgbF> leaving;

@@ -12,20 +12,20 @@ namespace {
 constexpr int kReach = 15;  // voxels: 15^2 fits into a byte
 constexpr std::uint8_t kFar = kReach * kReach;
 
-/// Squared gap between voxels that are `steps` apart along one axis: those touching have none.
+/// Squared gap between voxels `steps` apart along one axis; 0 between adjacent ones.
 constexpr int gap2(int steps) {
   const int gap = std::max(0, std::abs(steps) - 1);
   return gap * gap;
 }
 
-/// Into how many pieces the sides of a triangle are cut, so none is longer than an edge: as many, squared, in all.
+/// Number of pieces per side that limits a triangle's pieces to one voxel edge; its square is the total.
 int pieces_along(const Vec3d& ab, const Vec3d& ac, double inverse_edge) {
   const Vec3d bc = ac - ab;
   const double longest = std::sqrt(std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)}));
   return int(std::clamp(std::ceil(longest * inverse_edge), 1.0, 4096.0));
 }
 
-/// The fraction of a triangle's box lying in another.
+/// Fraction of a triangle's box lying in another.
 double share_inside(const Bounds& box, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d low = component_min(component_min(a, b), c), high = component_max(component_max(a, b), c);
   double share = 1;
@@ -53,7 +53,7 @@ Vec3d FreeDistance::counts_of(const Vec3d& size, double edge) {
 
 double FreeDistance::edge_for(const Vec3d& size, double edge) {
   edge = std::clamp(edge, max_component(size) * 1e-3,
-                    max_component(size) * 1e6);  // a clear medium's is infinite
+                    max_component(size) * 1e6);  // infinite in a clear medium
   if (!(edge > 0)) edge = 1;
   const auto voxels = [&] {
     const Vec3d counts = counts_of(size, edge);
@@ -64,7 +64,7 @@ double FreeDistance::edge_for(const Vec3d& size, double edge) {
 }
 
 double FreeDistance::expected_bytes(const World& world, const Bounds& box, double edge) {
-  constexpr double kVoxelsOfPiece = 5;  // measured: 3 to 6
+  constexpr double kVoxelsOfPiece = 5;  // by bench: between 3 and 6
   constexpr double kOfVoxel = sizeof(std::uint8_t) + sizeof(Plane) + 2 * sizeof(std::uint32_t);
   const Vec3d size = box.high - box.low;
   const double used = edge_for(size, edge);
@@ -104,8 +104,8 @@ FreeDistance::FreeDistance(const World& world, const Bounds& box, double edge, d
   });
 }
 
-/// Calls use(corners, normal with the length of the area) for all triangles, cut until no side is longer than an
-/// edge.
+/// Calls use(corners, normal with the length of the area) for all triangles, subdivided until no side is
+/// longer than an edge.
 template <class Use>
 void FreeDistance::for_pieces(const World& world, const Use& use) const {
   for (const Mesh& mesh : world.meshes)
@@ -122,7 +122,7 @@ void FreeDistance::for_pieces(const World& world, const Use& use) const {
     }
 }
 
-/// The voxels of the piece's box that its plane crosses, and a little more: rays see single precision.
+/// Voxels of the piece's box that intersect its plane, with a margin for the single precision of rays.
 template <class Use>
 void FreeDistance::for_voxels(const std::array<Vec3d, 3>& piece, const Use& use) const {
   const double margin = 1e-5 * edge_ * (double(nx_) + double(ny_) + double(nz_));
@@ -202,7 +202,7 @@ void FreeDistance::spread() {
   along(nx_ * ny_, nz_, nx_ * ny_, [&](std::size_t line) { return line; });
 }
 
-// Along the mean normal of what lies within reach. Corners are rounded to floats: a little less is taken.
+// Plane along the mean normal of the surface within reach, lowered by the rounding of corners to floats.
 FreeDistance::Plane FreeDistance::plane_of(std::size_t voxel, const Pieces& pieces) const {
   const int steps = int(std::ceil(reach_ * inverse_edge_));
   const double within2 = reach_ * inverse_edge_ * (reach_ * inverse_edge_);

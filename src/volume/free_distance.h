@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far light can fly before it may meet a surface: no ray is needed on the way.
+// Lower bound of the distance to any surface: shorter flights need no ray.
 #pragma once
 
 #include <algorithm>
@@ -13,13 +13,12 @@
 
 namespace opaline {
 
-/// A grid of cubic voxels over a box. Each has a lower bound of the distance from any of its points to any triangle
-/// of the world; those beside a surface have a plane, too, behind which all triangles nearby lie: along it and away
-/// from it light flies farther.
+/// Grid of cubic voxels over a box. Each has a lower bound of the distance from any of its points to any
+/// triangle of the world. Voxels near a surface also have a plane with all nearby triangles behind it, a
+/// better bound for flights along or away from it.
 class FreeDistance {
  public:
-  /// edge: of a voxel, wanted; larger where there would be more than kMostVoxels
-  /// reach: how far planes look, in edges
+  /// edge: requested edge of a voxel, enlarged to limit the grid to kMostVoxels reach: of planes, in edges
   FreeDistance(const World& world, const Bounds& box, double edge, double reach);
 
   static constexpr std::size_t kMostVoxels = std::size_t(1) << 23;
@@ -27,7 +26,7 @@ class FreeDistance {
   static double expected_bytes(const World& world, const Bounds& box, double edge);
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  /// Where a point is in the grid.
+  /// Voxel of a point.
   struct Place {
     std::size_t voxel;  ///< kNone: outside the box
     Vec3d within;       ///< from the voxel's middle, in edges
@@ -41,10 +40,10 @@ class FreeDistance {
     return {x + nx_ * (y + ny_ * z), {q.x - double(x) - .5, q.y - double(y) - .5, q.z - double(z) - .5}};
   }
 
-  /// To any side.
+  /// Distance bound for any direction.
   double around(const Place& place) const { return distances_[steps_[place.voxel]]; }
 
-  /// True if it is at least the planes' reach in this direction.
+  /// True if the bound in this direction is at least the planes' reach.
   bool is_free(const Place& place, const Vec3d& direction) const {
     const Plane& plane = planes_[place.voxel];
     const Vec3d normal(double(plane.x), double(plane.y), double(plane.z));
@@ -68,10 +67,10 @@ class FreeDistance {
     std::array<Vec3f, 3> corners;
     Vec3f normal;  ///< outward, of a third of the piece's area
   };
-  /// The pieces that voxels hold.
+  /// Pieces by voxel.
   struct Pieces {
     std::vector<Piece> pieces;
-    std::vector<std::uint32_t> first;      ///< in `of_voxels`, one a voxel, and the end
+    std::vector<std::uint32_t> first;      ///< in `of_voxels`, one per voxel, and the end
     std::vector<std::uint32_t> of_voxels;  ///< indices of pieces
   };
 
@@ -93,7 +92,7 @@ class FreeDistance {
   Vec3d low_, counts_;
   double edge_, inverse_edge_, reach_, reach_steps_;
   std::size_t nx_, ny_, nz_;
-  std::vector<std::uint8_t> steps_;      ///< squared distance to a voxel that a triangle crosses, in edges
+  std::vector<std::uint8_t> steps_;      ///< squared distance to the nearest occupied voxel, in edges
   std::array<double, 256> distances_{};  ///< distances by their squares
   std::vector<Plane> planes_;
 };

@@ -16,8 +16,8 @@ struct Crossing {
   bool enters;
 };
 
-// Twice the area of (a, b, p), from the lesser end of the edge whichever way it is asked for: two triangles at an
-// edge agree on which of them has a point.
+// Twice the area of (a, b, p), from the lesser end of the edge in either order: two triangles sharing an edge
+// agree on its points.
 double side_of(const Vec3d& a, const Vec3d& b, double x, double y) {
   const bool swapped = b.x < a.x || (b.x == a.x && b.y < a.y);
   const Vec3d &from = swapped ? b : a, &to = swapped ? a : b;
@@ -27,10 +27,10 @@ double side_of(const Vec3d& a, const Vec3d& b, double x, double y) {
 
 bool is_within(double side, const Vec3d& a, const Vec3d& b) {
   if (side != 0) return side > 0;
-  return a.y != b.y ? a.y > b.y : a.x > b.x;  // one of the two sharing the edge
+  return a.y != b.y ? a.y > b.y : a.x > b.x;  // tie rule of two triangles sharing an edge
 }
 
-// The lines crossing a triangle; corners in half cells.
+// Lines through a triangle; corners in half cells.
 template <class Found>
 void cross_triangle(std::array<Vec3d, 3> p, int columns, int rows, const Found& found) {
   const double area = side_of(p[0], p[1], p[2].x, p[2].y);
@@ -90,7 +90,7 @@ InsideLines::InsideLines(const World& world, std::span<const std::uint32_t> mesh
       all += crossings[end].enters ? 1 : -1;
     for (int sheets = 0; next < end; ++next) {
       const int before = std::exchange(sheets, sheets + (crossings[next].enters ? 1 : -1));
-      if (all != 0 && sheets < 0) sheets = 0;  // left what was never entered
+      if (all != 0 && sheets < 0) sheets = 0;  // an exit without entry
       if ((before == 0) != (sheets == 0)) bounds_.push_back(crossings[next].z);
     }
     if ((bounds_.size() - first_.back()) % 2 == 1) bounds_.pop_back();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where parallel lines run inside a body.
+// Intervals of parallel lines inside a body.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace opaline {
 
-/// A cube of lattice cells around a body.
+/// Box of lattice cells around a body.
 struct Lattice {
   Vec3d low{};                 ///< corner of the first cell, world units
   double cell = 1;             ///< edge, world units
@@ -19,18 +19,19 @@ struct Lattice {
   Vec3d into(const Vec3d& p) const { return (p - low) / cell; }
 };
 
-/// Lines along z through the corners, the edges' middles and the centres of the cells seen from above: at
-/// x = column / 2, y = row / 2 of the lattice.
+/// Lines along z through the corners, edge midpoints and centres of the cells seen from above: at x = column
+/// / 2, y = row / 2 of the lattice.
 class InsideLines {
  public:
-  /// Inside is where not as many sheets have been entered as left; what an open mesh never closes is outside.
+  /// A point is inside if the entered and left sheets before it differ in number; open ends of an open mesh
+  /// are outside.
   InsideLines(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice);
 
-  /// How much of [low, high] of a line is inside, in its length.
+  /// Length of a line within [low, high] inside the body.
   double covered(int column, int row, double low, double high) const;
   bool contains(int column, int row, double z) const;
 
-  /// Depths at which a line enters and leaves, in turn, ascending.
+  /// Depths of entry and exit, alternating and ascending.
   std::span<const float> bounds(int column, int row) const {
     const std::size_t line = std::size_t(row) * std::size_t(columns_) + std::size_t(column);
     return std::span(bounds_).subspan(first_[line], first_[line + 1] - first_[line]);

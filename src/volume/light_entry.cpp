@@ -25,7 +25,7 @@ Offer offer_of(const Light& light, bool unit_emission, const SurfacePoint& point
   return {sample, irradiance, max_component(irradiance)};
 }
 
-/// Barycentrics in a triangle of a place in one of its count^2 equal pieces: rows of upright and turned ones.
+/// Barycentrics of a point in one of a triangle's count^2 equal pieces: rows of upright and inverted ones.
 std::array<double, 2> place_in_piece(std::uint32_t count, std::uint32_t index, double u, double v) {
   // Rows counted from the edge opposite the third corner: row r has 2 (count - r) - 1 pieces.
   std::uint32_t row = 0, before = 0;
@@ -96,8 +96,8 @@ EvenPoint EvenPoints::at(double share, double u, double v, std::size_t& hint) co
           place_u, place_v};
 }
 
-// Places on a lamp that bring more are drawn more often: of some candidates one is taken by what it would bring, and
-// stands for the mean of all (resampling, Talbot et al. 2005). Candidates are far cheaper than a walk.
+// Resampled importance sampling (Talbot et al. 2005): chooses among candidate points on the lights by
+// unoccluded irradiance. Candidates are far cheaper than a walk.
 ArrivedLight light_at(const RayScene& rays, std::span<const Light> lights, bool unit_emission,
                       const SurfacePoint& point, WalkNumbers& numbers) {
   constexpr int kCandidates = 16;

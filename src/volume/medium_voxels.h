@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A medium that varies inside a body, as random walks look it up.
+// Heterogeneous medium on a grid, for random walks.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace opaline {
 
-/// Cubes filling a box, each with the media of its middle.
+/// Cubes filling a box, each with the media at its centre.
 class MediumVoxels {
  public:
-  /// edge: of a cube, wanted; larger where there would be more than kMost
+  /// edge: requested edge of a cube, enlarged to limit the grid to kMost
   MediumVoxels(const MediaInside& media, const Bounds& box, double edge);
 
   static constexpr double kMost = 1 << 21;
@@ -22,7 +22,7 @@ class MediumVoxels {
   struct Local {
     float sigma_t = 0, albedo = 0;
   };
-  /// position: of the box; of others the nearest cube counts
+  /// position: in the box, otherwise clamped to the nearest cube
   const Local& at(const Vec3d& position, std::size_t channel) const;
 
   /// Upper bound of sigma_t over all cubes, with the common g and eta.

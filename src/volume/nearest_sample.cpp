@@ -21,7 +21,7 @@ Vec3f sheet_normal(const SurfaceSample& sample, const World* world) {
   return surface_point(world->meshes[sample.mesh], sample.triangle, sample.u, sample.v).geometric;
 }
 
-// The 26 steps to a cube's neighbours, those sharing a face first: the nearest sample is found early.
+// The 26 steps to a cube's neighbours, those sharing a face first, to find the nearest sample early.
 constexpr auto kNeighbours = [] {
   std::array<std::array<std::int8_t, 3>, 26> steps{};
   std::size_t count = 0;
@@ -70,7 +70,7 @@ NearestSample::NearestSample(std::span<const SurfaceSample> samples, const World
                                                              sheet_normal(samples[i], world), i};
 }
 
-// Cubes far outside stand for all that lies beyond.
+// Cube of a position; cubes at the limits represent everything beyond.
 NearestSample::Place NearestSample::place_of(const Vec3f& position) const {
   const auto coordinate = [this](float c) {
     return std::int32_t(std::clamp(std::floor(c * inverse_edge_), -2.0f, kWidest + 2)) + 2;
@@ -83,7 +83,7 @@ std::uint64_t NearestSample::key_of(const Place& p) {
   return std::uint64_t(p.x) | std::uint64_t(p.y) << kBits | std::uint64_t(p.z) << 2 * kBits;
 }
 
-// Where the cube is, or would be put.
+// Slot of a cube, or the free slot for it.
 std::size_t NearestSample::slot_of(std::uint64_t key) const {
   std::size_t slot = (key * 0x9E3779B97F4A7C15ull) >> shift_;
   while (slots_[slot].count > 0 && slots_[slot].key != key) slot = (slot + 1) & (slots_.size() - 1);
@@ -112,7 +112,7 @@ NearestSample::Found NearestSample::nearest(const Vec3f& position, const Vec3f* 
   look_into(middle, position, normal, best);
   const Vec3f within =
       (position - low_) - Vec3f(float(middle.x - 2), float(middle.y - 2), float(middle.z - 2)) * edge_;
-  const auto gap2 = [this](float at, int step) {  // along one axis, to the cubes on that side
+  const auto gap2 = [this](float at, int step) {  // squared distance to the cubes on one side along an axis
     const float gap = step < 0 ? at : step > 0 ? edge_ - at : 0;
     return gap * std::abs(gap);
   };

@@ -7,7 +7,7 @@
 namespace opaline {
 namespace {
 
-constexpr int kMostSheets = 64;  // that a ray goes through
+constexpr int kMostSheets = 64;  // maximum sheets along a ray
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 constexpr double kFacing = -.5;        // cosine between the normals of sheets touching
 constexpr std::size_t kTested = 4096;  // pieces
@@ -33,7 +33,7 @@ bool leaves(const Hit& hit, const Vec3d& direction) {
 
 /// Winding numbers of the meshes on both sides of a piece.
 struct OuterSurface::Windings {
-  int behind = 0, before = 0;  ///< before: on the side that its normal points to
+  int behind = 0, before = 0;  ///< before: on the side of its normal
 
   bool are_plain() const { return behind == 1 && before == 0; }
   friend bool operator==(const Windings&, const Windings&) = default;
@@ -68,7 +68,7 @@ void OuterSurface::follow_to_end(const Vec3d& from, const Vec3d& direction, cons
   });
 }
 
-// A ray from behind the piece to the outside; what it meets next to the piece lies in the same place.
+// Winding numbers from a ray starting behind the piece; hits next to the piece count as coincident.
 OuterSurface::Windings OuterSurface::windings_at(const BoundaryPiece& piece, const Vec3d& direction) const {
   const double offset = this->offset(piece), cosine = dot(piece.normal, direction);
   Windings windings;
@@ -79,7 +79,7 @@ OuterSurface::Windings OuterSurface::windings_at(const BoundaryPiece& piece, con
   return windings;
 }
 
-/// True if another sheet of the body faces it from nearby: light leaving enters again.
+/// True if another sheet of the body faces it from nearby, so that outgoing light enters again.
 bool OuterSurface::touches(const BoundaryPiece& piece, const Vec3d& outward) const {
   bool found = false;
   follow(rays_, Vec3d(piece.middle) + outward * offset(piece), outward, least_gap_,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which pieces of a body's meshes bound the solid that they enclose: meshes may cross themselves, fold back or lie
-// within each other.
+// Pieces of a body's meshes bounding the solid, for meshes with self-intersections, folds or nested shells.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +20,10 @@ struct BoundaryPiece {
   std::uint32_t mesh = 0, triangle = 0;
 };
 
-/// A piece of the meshes as a boundary of the solid, where the winding number is not 0.
+/// Role of a piece as boundary of the solid, the region of nonzero winding number.
 struct Boundedness {
-  /// Fraction of the piece's area that counts: 0 inside the solid, 1/2 of two sheets nearer than rays tell.
+  /// Counting fraction of the piece's area: 0 inside the solid, 1/2 for each of two sheets closer than the
+  /// resolution of rays.
   float share = 1;
   bool is_turned = false;  ///< its triangle faces into the solid
 
@@ -33,14 +33,14 @@ struct Boundedness {
 class OuterSurface {
  public:
   /// in    meshes: the body's, closed
-  ///       least_gap: sheets nearer than this facing each other touch; world units
+  ///       least_gap: sheets facing each other at a smaller distance touch; world units
   OuterSurface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
                double least_gap);
 
   Boundedness of(const BoundaryPiece& piece) const;
-  /// Returns whether the solid is behind the piece and the outside in front of it, whatever other sheets are near.
+  /// True if the solid is behind the piece and the outside in front of it, whatever other sheets are near.
   bool is_plain(const BoundaryPiece& piece) const;
-  /// Tests a few thousand of the pieces; returns whether any of them is not plain.
+  /// Tests a few thousand of the pieces; true if any of them is not plain.
   bool has_inner(std::size_t pieces, const std::function<BoundaryPiece(std::size_t)>& piece_of) const;
 
  private:
@@ -53,7 +53,7 @@ class OuterSurface {
   double offset(const BoundaryPiece& piece) const { return double(rays_.offset(piece.mesh, piece.middle)); }
 
   const RayScene& rays_;
-  std::optional<LineQuery> lines_;  ///< where meshes may coincide, which rays that go on behind a hit miss
+  std::optional<LineQuery> lines_;  ///< for coincident meshes, missed by rays continuing behind a hit
   std::vector<bool> is_body_;
   double least_gap_;
 };

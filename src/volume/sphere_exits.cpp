@@ -11,7 +11,7 @@ namespace opaline {
 namespace {
 
 SphereExits::Exit walked_out(double radius, WalkNumbers& numbers) {
-  constexpr std::uint32_t kMost = 100000;  // even of 8 mean free paths one in e^1000 has more
+  constexpr std::uint32_t kMost = 100000;  // far beyond any practical probability
   Vec3d position{}, direction = even_direction(numbers);
   for (std::uint32_t collisions = 0;; ++collisions) {
     const double flight = free_path(numbers), along = dot(position, direction);

@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-// Remaining fraction of the difference to cells of twice the size: the error falls with the power 1.2 of the cells.
+// Fraction of the difference to cells of twice the size that remains, for an error of order 1.2 in the cells.
 constexpr float kLeft = .8f;
 
 BodyMedia calibrated(const VolumeDiffusionInput& input) {
@@ -77,8 +77,8 @@ double length_to_resolve(double mean_free_path, double absorbed) {
   return mean_free_path * std::min(1., kPerFading / std::sqrt(3 * absorbed));
 }
 
-// For a face of a cell: cells grow inwards (measured on bunnies and spheres: 4.3 to 4.6). Thin bodies have the smallest ones
-// alone, those filling them and those that their surface cuts.
+// Cells per face of the surface's cells, as cells grow inwards; src/volume/README.md. Thin bodies contain
+// cells of the smallest size only, filling them or cut by their surface.
 double expected_cells(double area, double thickness, double cell) {
   constexpr double kOfThick = 4.5, kCut = .75;
   const double for_face = thickness > 0 ? std::min(kOfThick, thickness / (2 * cell) + kCut) : kOfThick;
@@ -105,7 +105,7 @@ VolumeExitance VolumeDiffusion::exitance_of_even(std::span<const RgbF> entering,
 }
 
 VolumeExitance VolumeDiffusion::State::exitance(const EnteringLight& light, Monitor* monitor) const {
-  // The equation takes about as long as the collisions.
+  // Solving takes about as long as the first collisions.
   const std::size_t elements = coarse.elements() + fine.elements();
   if (monitor != nullptr) monitor->begin("diffusion", 2 * elements * sources_of(light));
   const DiffusionBody::Solution rough = coarse.solve(light, {}, monitor);

@@ -14,11 +14,11 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kWalksOfPass = 4;    // a sample
-constexpr std::size_t kFewestPasses = 8;   // before an estimate of the error is believed
-constexpr std::size_t kPassesOfNoise = 2;  // before there is one
+constexpr std::size_t kFewestPasses = 8;   // before an error estimate is reliable
+constexpr std::size_t kPassesOfNoise = 2;  // before an error estimate exists
 constexpr std::size_t kMostSeparate = 4, kMostSeparateSums = 8'000'000;  // lights; lights times samples
 
-/// Channels of equal media have the walks of the first of them in common.
+/// Channel providing the walks of a channel: the first one with an equal medium.
 std::size_t walked_channel(const VolumeInput& input, std::size_t channel) {
   if (input.media_inside) return channel;
   const auto same = [](const HomogeneousMedium& a, const HomogeneousMedium& b) {
@@ -33,7 +33,7 @@ bool is_walked(const VolumeInput& input, std::size_t channel) {
   return input.media[channel].sigma_s > 0;
 }
 
-/// One a light, or one for all; none without light.
+/// One per light, or one for all; none without lights.
 std::size_t sources_of(const VolumeInput& input) {
   return walks_by_light(input) ? input.lights.size() : std::min<std::size_t>(1, input.lights.size());
 }
@@ -47,7 +47,7 @@ struct Job {
   std::size_t source, channel;
 };
 
-/// Those whose sums count in the lights' colours.
+/// Jobs with a nonzero weight in the lights' colours.
 std::vector<Job> jobs_of(const VolumeInput& input, const VolumeSums& sums) {
   std::vector<Job> jobs;
   for (std::size_t s = 0; s < sums.sources.size(); ++s)
@@ -86,14 +86,14 @@ PassMean pass_mean_of(const WalkSums& sums, std::size_t i) {
   return {mean, std::max(0.0, root * root / n - mean * mean) / (n - 1)};
 }
 
-/// The relative error, and what makes it.
+/// Relative error and its contributions.
 struct Noise {
   std::array<double, 3> relative{};     ///< relative error of each channel
-  std::array<std::size_t, 3> walked{};  ///< the channel whose walks it has
-  std::vector<double> shares;           ///< one a job: its part in relative^2, the largest of its channels'
+  std::array<std::size_t, 3> walked{};  ///< channel providing its walks
+  std::vector<double> shares;           ///< per job: largest contribution to a channel's relative^2
 
   double worst() const { return *std::ranges::max_element(relative); }
-  /// The largest of the channels that have these walks.
+  /// Largest error of the channels using these walks.
   double of_job(std::size_t channel) const {
     double largest = 0;
     for (std::size_t c = 0; c < 3; ++c) largest = std::max(largest, walked[c] == channel ? relative[c] : 0);
@@ -127,7 +127,7 @@ class Evaluation {
     return sum;
   }
 
-  /// enough: a channel whose error is no larger has no part
+  /// enough: channels with a smaller error do not contribute
   Noise noise(const std::vector<Job>& jobs, double enough = 0) const {
     Noise noise;
     noise.shares.resize(jobs.size());
@@ -195,7 +195,8 @@ class Walks {
   const std::vector<Job>& jobs() const { return jobs_; }
   WalkSums& sums(const Job& job) const { return sums_.sources[job.source].channels[job.channel]; }
 
-  /// One pass of each of these jobs; together, for the last chunks of a pass leave threads idle.
+  /// Runs one pass of each of these jobs, in parallel over all: a single pass would leave threads idle at its
+  /// end.
   void add_passes(std::span<const Job> jobs) const {
     const std::size_t together =
         std::clamp<std::size_t>(kMostCounts / (BodyWalks::kChunks * input_.samples.size()), 1, 8);
@@ -204,7 +205,7 @@ class Walks {
   }
 
  private:
-  static constexpr std::size_t kMostCounts = std::size_t(1) << 26;  // held at once
+  static constexpr std::size_t kMostCounts = std::size_t(1) << 26;  // in memory at once
 
   void add_together(std::span<const Job> jobs) const {
     constexpr std::size_t kChunks = BodyWalks::kChunks;
@@ -235,7 +236,7 @@ class Walks {
   std::vector<Job> jobs_;
 };
 
-/// Jobs that lack passes for the number that everyone gets.
+/// Jobs with fewer than this number of passes.
 std::vector<Job> jobs_behind(const Walks& walks, std::size_t passes) {
   std::vector<Job> behind;
   for (const Job& job : walks.jobs())
@@ -243,7 +244,7 @@ std::vector<Job> jobs_behind(const Walks& walks, std::size_t passes) {
   return behind;
 }
 
-/// Jobs that have the largest parts in an error that is too large: another pass of them brings most.
+/// Jobs with the largest contributions to the error, where another pass is most effective.
 std::vector<Job> jobs_wanted(const Walks& walks, const Noise& noise, std::size_t most) {
   double largest = 0;
   const auto brings = [&](std::size_t j) {
@@ -257,14 +258,14 @@ std::vector<Job> jobs_wanted(const Walks& walks, const Noise& noise, std::size_t
   return wanted;
 }
 
-/// Tells how much is done of what is expected.
+/// Reports progress against the expected passes.
 class Progress {
  public:
   Progress(Monitor* monitor, const Walks& walks) : monitor_(monitor), walks_(walks), before_(passes()) {
     if (monitor != nullptr) monitor->begin("random walks", 0);
   }
 
-  /// That each job has so many passes.
+  /// Expects this number of passes per job.
   void expect(std::size_t passes_each) const {
     std::size_t all = 0;
     for (const Job& job : walks_.jobs()) all += std::max(passes_each, walks_.sums(job).passes);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From an asset as other programs write it (GLB, glTF 2.0, OBJ with MTL, PLY, STL, OFF) to the text of a scene file.
+// Conversion of an asset of another program (GLB, glTF 2.0, OBJ with MTL, PLY, STL, OFF) to the text of a
+// scene file.
 #pragma once
 
 #include <string>
@@ -10,23 +11,24 @@ namespace opaline {
 struct ImportedAsset {
   std::string text;                      ///< a scene file, see scenes/README.md
   std::vector<std::string> translated;   ///< conversions of values, a line each
-  std::vector<std::string> not_carried;  ///< parts that are not imported, a line each
+  std::vector<std::string> not_carried;  ///< parts without import, a line each
   std::vector<std::string> warnings;     ///< missing files and other changes of the image, a line each
   std::string summary;                   ///< one line
-  std::size_t bytes = 0;                 ///< memory that its records take while it is read
+  std::size_t bytes = 0;                 ///< memory of its records during reading
 };
 
-/// True if a file's name ends as an asset's does, in upper or lower case.
+/// True for a file name with an asset's extension, in upper or lower case.
 bool is_asset_name(const std::string& path);
 
-/// From now on the files that assets name may lie outside of the assets' folders.
+/// Permits files outside of the assets' folders from now on.
 void allow_files_outside_assets();
 bool are_files_outside_assets_allowed();
 
-/// in    path: an asset; mesh_path: how the scene file calls it, relative to its own folder; material: a MaterialX
-///       file in place of the asset's materials, "skin.mtlx" or "skin.mtlx#name" of a surface or material in it
-/// out   a scene that is valid and shows something: with a camera and lights, the asset's or default ones
-/// error Error{bad_input} naming the file and the record: not there, broken, or without a triangle
+/// in    path: an asset; mesh_path: its name in the scene file, relative to that file's folder; material: a
+///       MaterialX file replacing the asset's materials, "skin.mtlx" or "skin.mtlx#name" of a surface or
+///       material in it
+/// out   a valid scene with a visible shape: with a camera and lights, the asset's or default ones
+/// error Error{bad_input} naming the file and the record: missing, broken, or without a triangle
 ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
                            const std::string& material = {});
 

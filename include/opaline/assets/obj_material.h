@@ -7,10 +7,10 @@
 
 namespace opaline {
 
-/// The faces in front of the first usemtl, or behind one without a name.
+/// Faces before the first usemtl, or after one without a name.
 inline constexpr std::string_view kNoMaterial = "(none)";
 
-/// The name behind a usemtl or newmtl, which must be UTF-8 to stand in a scene file: what is not is taken for Latin-1.
+/// Name after a usemtl or newmtl, as UTF-8 for a scene file; invalid UTF-8 is read as Latin-1.
 std::string obj_material_name(std::string_view text);
 
 }  // namespace opaline

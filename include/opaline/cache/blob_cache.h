@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results on the disk, by the hash of their inputs.
+// Disk cache of results, by the hash of their inputs.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,29 @@
 
 namespace opaline {
 
-/// A folder of entries, HDF5 files that any number of processes fill and read at once: an entry appears whole
-/// under its key or not at all, and is checked whole before anyone looks into it. Nothing here fails a run:
-/// what cannot be used is computed again, what cannot be kept is not.
+/// A folder of entries, HDF5 files shared by any number of processes: an entry appears atomically under its
+/// key, and is checked as a whole before use. Failures never fail a run: unusable entries are recomputed, and
+/// unwritable ones skipped.
 class BlobCache {
  public:
   static constexpr std::uint64_t kDefaultBytes = std::uint64_t(8) << 30;
 
-  /// Makes the folder. most_bytes: beyond it the least recently used entries go.
-  /// error Error{run_failed} naming the folder: there is none and none can be made
+  /// Creates the folder. most_bytes: maximum cache size; evicts the least recently used entries.
+  /// error Error{run_failed} naming the folder: missing, and cannot be created
   explicit BlobCache(std::string folder, std::uint64_t most_bytes = kDefaultBytes);
 
-  /// The entry of a key, or nothing.
+  /// Entry of a key, or nothing.
   /// in    stage: lower-case letters, the first part of the entry's file name
-  ///       most_bytes: what the result can need; a larger file is not read
+  ///       most_bytes: upper bound for the result; larger files are not read
   std::optional<BlobReader> find(const char* stage, const StageKey& key, std::uint64_t most_bytes);
-  /// Reports an entry that was found, but holds something that its key cannot stand for.
+  /// Reports an entry with contents implausible for its key.
   void reject(const char* stage, const StageKey& key);
 
-  /// Writes an entry and makes room for it. Failures are kept for warning().
+  /// Writes an entry and evicts others if necessary. Failures appear in warning().
   /// in    fill: puts the entry's arrays; called at most once
   void keep(const char* stage, const StageKey& key, const std::function<void(BlobWriter&)>& fill);
 
-  /// One line that names every entry that could not be used and why something was not kept; empty: all well.
+  /// One line naming every unusable entry and the reason for an unwritten result; empty: no failures.
   std::string warning() const;
 
  private:
@@ -44,7 +44,7 @@ class BlobCache {
   std::string folder_;
   std::uint64_t most_bytes_;
   std::vector<std::string> unusable_, too_large_;
-  std::string not_kept_;    // why; then nothing more is tried
+  std::string not_kept_;    // reason; then nothing more is written
   bool is_locked_ = false;  // by another process, for too long to wait
 };
 

@@ -27,14 +27,14 @@ struct BlobMember {
   std::size_t count = 1;
 };
 
-/// How an item lies in memory, and so in the file: reading is copying. A plain number or a short array of
-/// numbers is one member without a name.
+/// Memory layout of an item, equal to that in the file, so reading is copying. A plain number or a short
+/// array of numbers is one member without a name.
 struct BlobType {
   std::size_t bytes;  ///< bytes of an item, padding included
   std::vector<BlobMember> members;
 };
 
-/// The description of T. Whoever keeps arrays of a struct specialises it beside the code that does.
+/// Description of T. Specialised beside the code storing arrays of a struct.
 template <class T>
 BlobType blob_type();
 
@@ -45,15 +45,14 @@ BlobType blob_type<double>();
 template <>
 BlobType blob_type<std::uint32_t>();
 
-/// Where the values of an array lie in an entry's file.
+/// Position of an array's values in an entry's file.
 struct BlobPlace {
   std::string name;
   std::size_t count = 0, item_bytes = 0;
-  std::size_t offset = 0;  ///< from the start of the file; of no meaning without values
+  std::size_t offset = 0;  ///< from the start of the file; undefined without values
 };
 
-/// An entry whose bytes are those that were written, in memory. What they mean is still to be checked: an
-/// entry may have been made by hand.
+/// An entry in memory, with verified bytes. Contents are to be checked further, as an entry may be forged.
 class BlobReader {
  public:
   BlobReader() = default;
@@ -61,10 +60,10 @@ class BlobReader {
   BlobReader(ZeroedArray<char> bytes, std::vector<BlobPlace> arrays)
       : bytes_(std::move(bytes)), arrays_(std::move(arrays)) {}
 
-  /// The bytes of an array of such items; nothing where there is none.
+  /// Bytes of an array of such items; empty if missing.
   std::optional<std::span<const char>> bytes_of(std::string_view name, std::size_t item_bytes) const;
 
-  /// A copy of an array; nothing where there is none of such items.
+  /// A copy of an array; empty if missing.
   template <class T>
   std::optional<std::vector<T>> get(std::string_view name) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -74,7 +73,7 @@ class BlobReader {
     if (!bytes->empty()) std::memcpy(static_cast<void*>(values.data()), bytes->data(), bytes->size());
     return values;
   }
-  /// The one item of an array of doubles; nothing where there is none, or there are more.
+  /// The single item of an array of doubles; empty if missing, or with more items.
   std::optional<double> number(std::string_view name) const;
 
  private:
@@ -82,7 +81,7 @@ class BlobReader {
   std::vector<BlobPlace> arrays_;
 };
 
-/// Receives the arrays of an entry. After the first failure what follows does nothing.
+/// Receives the arrays of an entry. No effect after the first failure.
 class BlobWriter {
  public:
   /// Adds an array under a name of its own.

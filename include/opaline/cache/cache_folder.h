@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cache entries as files: list, integrity, and eviction order.
+// Cache entries as files: listing, integrity, and eviction.
 #pragma once
 
 #include <cstdint>
@@ -16,25 +16,23 @@ struct CacheEntry {
   std::string file;   ///< its name in the folder
   std::string stage;  ///< "samples", "light", "octree" or "exitance"
   StageKey key;
-  std::uint64_t bytes = 0;                    ///< 0 for what has an entry's name and is no regular file
+  std::uint64_t bytes = 0;                    ///< 0 for an entry's name without a regular file
   std::filesystem::file_time_type last_used;  ///< written or read
 };
 
-/// All entries, the least recently used first; other files in the folder are not looked at.
+/// All entries, the least recently used first; ignores other files in the folder.
 /// error Error{run_failed} naming the folder: it cannot be read
 std::vector<CacheEntry> list_cache(const std::string& folder);
 
-/// Reads an entry whole, piece by piece; empty, or why it cannot be used: "is truncated". Whether it holds
-/// what its key stands for only those who have the scene can tell.
+/// Reads a whole entry in pieces; returns the reason it is unusable ("is truncated"), or an empty text. Does
+/// not check its plausibility, which needs the scene.
 std::string problem_of(const std::string& folder, const CacheEntry& entry);
 
-/// Removes the least recently used entries until the rest has at most this many bytes, and what writers that
-/// were killed more than an hour ago left behind. One process at a time; readers and writers go on meanwhile.
-/// Folders stay.
-/// in    wait: asked every 10 ms while another process holds the lock: false gives up, and
-/// nothing is removed; none:
-///       waits as long as it takes
-/// out   the entries removed
+/// Removes the least recently used entries down to this many bytes, and temporary files of writers killed
+/// more than an hour ago. One process at a time; readers and writers continue. Keeps folders.
+/// in    wait: called every 10 ms while another process has the lock: false gives up, removing nothing; none:
+///       waits indefinitely
+/// out   the removed entries
 /// error Error{run_failed} naming the folder or file
 std::vector<CacheEntry> prune_cache(const std::string& folder, std::uint64_t most_bytes,
                                     const std::function<bool()>& wait = {});

@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-/// XXH3's 128 bits: two results with one key are the same result. Not a defence against forgery.
+/// XXH3's 128 bits, identifying a result. Not a defence against forgery.
 struct StageKey {
   std::uint64_t high = 0, low = 0;
   friend auto operator<=>(const StageKey&, const StageKey&) = default;
@@ -22,17 +22,17 @@ struct StageKey {
 /// 32 hexadecimal digits, most significant first.
 std::string hex(const StageKey& key);
 
-/// Gathers what a key stands for. Every part goes in with its length in front: no two lists of parts read the
-/// same.
+/// Hashes the inputs of a result. Prefixes every part with its length, so different lists of parts have
+/// different keys.
 class KeyBuilder {
  public:
-  /// stage: what the key is of; version: of the code that computes it.
+  /// stage: name of the result; version: of the code computing it.
   KeyBuilder(std::string_view stage, std::uint64_t version);
   ~KeyBuilder();
   KeyBuilder(const KeyBuilder&) = delete;
   KeyBuilder& operator=(const KeyBuilder&) = delete;
 
-  /// Numbers, enumerators, and structs of one kind of number, which have no padding.
+  /// Numbers, enumerators, and structs of one kind of number, without padding.
   template <class T>
   KeyBuilder& add(const T& value) {
     static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
@@ -40,14 +40,14 @@ class KeyBuilder {
   }
   /// A text, byte by byte.
   KeyBuilder& add(const std::string& text) { return add_bytes(text.data(), text.size()); }
-  /// An array of what add() takes one of.
+  /// An array of types accepted by add().
   template <class T>
   KeyBuilder& add_array(std::span<const T> values) {
     static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
     return add_bytes(values.data(), values.size_bytes());
   }
 
-  /// The key of all that was added so far.
+  /// Key of everything added so far.
   StageKey key() const;
 
  private:

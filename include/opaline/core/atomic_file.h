@@ -7,8 +7,8 @@
 
 namespace opaline {
 
-/// A name beside the final file to write to; `commit` puts it in place of the final one, and without it the
-/// destructor removes it: an interrupted or failed run leaves the old file or none.
+/// Output under a temporary name beside the final file; `commit` renames it. Otherwise the destructor removes
+/// it: an interrupted or failed run leaves the old file or none.
 class AtomicFile {
  public:
   /// error Error{run_failed} if the folder cannot be written
@@ -17,7 +17,7 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Where to write; keeps the final file's extension, for writers that choose the format by it.
+  /// Path for writing; has the final file's extension, for writers choosing the format by it.
   const std::string& temporary() const { return temporary_; }
 
   /// Adds bytes at the end of the temporary file.
@@ -28,8 +28,7 @@ class AtomicFile {
   /// error Error{run_failed} naming the file: disk full, I/O error
   void commit();
 
-  /// Renames without waiting for the disk: after a power cut the file may be torn. For files whose readers
-  /// check them whole.
+  /// Renames without waiting for the disk: a power failure may leave a torn file. For files with checksums.
   /// error as commit
   void commit_unflushed();
 

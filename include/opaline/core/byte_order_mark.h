@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a text file is encoded, by its first bytes.
+// Encoding of a text file, by its first bytes.
 #pragma once
 
 #include <string>
 
 namespace opaline {
 
-/// Takes the byte order mark of UTF-8 off a file's text.
+/// Removes the UTF-8 byte order mark of a file's text.
 /// error Error{bad_input} naming the file: UTF-16
 void drop_byte_order_mark(const std::string& path, std::string& text);
 
-/// Ends the lines of a text that has carriage returns alone, as on the first Macintoshes, with line feeds.
+/// Replaces carriage returns by line feeds in a text without line feeds, as from classic Mac OS.
 void end_lines_with_line_feeds(std::string& text);
 
 }  // namespace opaline

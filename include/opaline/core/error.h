@@ -10,14 +10,14 @@ namespace opaline {
 /// Kind of an error, and exit code of the program: bad_input 2, run_failed 3 (I/O, memory), interrupted 130.
 enum class ErrorKind { bad_input = 2, run_failed = 3, interrupted = 130 };
 
-/// Thrown by parsing and I/O; caught where a place can be added or the run goes on, else in `main`. `what()` is one line:
-/// "file:line:column: what (expected ..., got ...)", leaving out the parts that are empty or zero.
+/// Thrown by parsing and I/O; caught in `main`, or where a position is added or the run continues. `what()`
+/// is one line: "file:line:column: what (expected ..., got ...)", omitting empty or zero parts.
 class Error : public std::exception {
  public:
   ErrorKind kind = ErrorKind::bad_input;
   std::string file;
-  int line = 0;    // 1-based; 0: not known
-  int column = 0;  // 1-based, in bytes; 0: not known
+  int line = 0;    // 1-based; 0: unknown
+  int column = 0;  // 1-based, in bytes; 0: unknown
   std::string message;
   std::string expected;
   std::string got;
@@ -33,10 +33,10 @@ class Error : public std::exception {
 
 /// Bad input in a file as a whole.
 Error bad_file(std::string file, std::string message, std::string expected = {}, std::string got = {});
-/// The run itself failed: I/O, memory.
+/// Failure of the run itself: I/O, memory.
 Error run_failed(std::string file, std::string message);
 
-/// Aborts with the message when an invariant of the program is broken, in release builds too.
+/// Aborts with the message if an invariant of the program is broken, also in release builds.
 void require(bool invariant, const char* message);
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that the program reads: regular files alone. A pipe or device may block for ever, or never end.
+// Input files. Only regular files are read: a pipe or device may block or never end.
 #pragma once
 
 #include <cstdint>
@@ -7,20 +7,21 @@
 
 namespace opaline {
 
-/// A regular file, open for reading. All input files are opened here, or checked here where a library opens them.
+/// A regular file, open for reading. All input files are opened here, or checked here where a library opens
+/// them.
 class InputFile {
  public:
-  /// in    noun: how messages call the file; hint: appended to the message where there is no such file
-  /// error Error{bad_input} naming the file: missing, no regular file, not permitted
+  /// in    noun: name of the file in messages; hint: appended to the message for a missing file
+  /// error Error{bad_input} naming the file: missing, not a regular file, not permitted
   explicit InputFile(const std::string& path, const std::string& noun = "file",
                      std::string (*hint)(const std::string& path) = nullptr);
 
-  /// Bytes, when it was opened.
+  /// Bytes, at the time of opening.
   std::uintmax_t size() const { return size_; }
-  /// The bytes from `begin` on, at most `most`; fewer where the file ends.
+  /// Bytes from `begin` on, at most `most`; fewer at the file's end.
   /// error Error{run_failed} naming the file: reading failed
   std::string read(std::uintmax_t begin, std::uintmax_t most) const;
-  /// error as read, also where the file became shorter
+  /// error as read, also for a file that became shorter
   std::string read_all() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ctrl-C as a polite request.
+// Cancellation by Ctrl-C.
 #pragma once
 
 #include <signal.h>
@@ -8,12 +8,12 @@
 
 namespace opaline {
 
-/// While it lives, the first SIGINT or SIGTERM cancels the monitor's work; the next one of its kind kills at
-/// once. Signals are the process's: the one made last has them, and at its end tells the one before of what came too late
-/// for its own work.
+/// During its lifetime, the first SIGINT or SIGTERM cancels the monitor's work; the next one of the same kind
+/// kills at once. Signals are global: the newest handler receives them, and at its end forwards late ones to
+/// the previous handler.
 class InterruptHandler {
  public:
-  /// Catches SIGINT and SIGTERM until it is destroyed. monitor: is told of the first one.
+  /// Catches SIGINT and SIGTERM until destroyed. monitor: cancelled by the first one.
   explicit InterruptHandler(Monitor& monitor);
   ~InterruptHandler();
   InterruptHandler(const InterruptHandler&) = delete;

@@ -10,8 +10,8 @@
 
 namespace opaline {
 
-/// Sets flush-to-zero and denormals-are-zero for a scope, as Embree asks, and restores the caller's mode.
-/// Denormals (below 1.2e-38) in sums of exitance carry no light; without this an underflowing exp stalls.
+/// Sets flush-to-zero and denormals-are-zero in a scope, as recommended by Embree, and restores the caller's
+/// mode. Denormals (below 1.2e-38) in sums of exitance carry no light, but are slow.
 class FlushDenormals {
  public:
   FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
@@ -27,9 +27,10 @@ inline std::size_t chunk_count(std::size_t n, std::size_t chunk) {
   return (n + chunk - 1) / chunk;
 }
 
-/// Calls body(begin, end, chunk index) over [0, n) cut into chunks of the given size, in parallel, each with
-/// denormals flushed. The cut depends on n and chunk alone; bodies write to places of their own. A body that throws ends
-/// the loop, but none within other bodies that are running: whoever called those takes their results for whole.
+/// Calls body(begin, end, chunk index) over [0, n) divided into chunks of the given size, in parallel, each
+/// with denormals flushed. The division depends on n and chunk alone; bodies write to disjoint memory. A
+/// throwing body ends the loop, but not nested loops in other running bodies, whose callers expect complete
+/// results.
 template <class Body>
 void parallel_chunks(std::size_t n, std::size_t chunk, const Body& body) {
   tbb::task_group_context alone(tbb::task_group_context::isolated);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counter-based random numbers and low-discrepancy points: a value depends on its indices alone, never on the
-// order in which threads ask.
+// Counter-based random numbers and low-discrepancy points: a value depends on its indices alone, independent
+// of threads.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Linear colours of one RGB space in another.
+// Conversion of linear colours between RGB spaces.
 #pragma once
 
 #include <array>
@@ -18,10 +18,10 @@ inline constexpr RgbPrimaries kRec709Primaries{{.64, .33}, {.30, .60}, {.15, .06
 /// AP1, the primaries of ACEScg, with the white of ACES. from SMPTE ST 2065-1, Academy S-2014-004
 inline constexpr RgbPrimaries kAp1Primaries{{.713, .293}, {.165, .830}, {.128, .044}, {.32168, .33766}};
 
-/// Rows: each is one channel of the result, as weights of the channels it is made of.
+/// Each row gives one channel of the result, as weights of the source channels.
 using ColorMatrix = std::array<Vec3d, 3>;
 
-/// From linear colours of one space to those of the other; white becomes white (Bradford's adaptation).
+/// Conversion of linear colours between two spaces; white stays white (Bradford adaptation).
 /// from  SMPTE RP 177 (RGB to XYZ); Lam 1985
 ColorMatrix color_matrix(const RgbPrimaries& from, const RgbPrimaries& to);
 

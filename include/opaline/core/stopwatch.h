@@ -12,7 +12,7 @@ struct StageCost {
   std::string stage;
   double wall_seconds = 0;
   double cpu_seconds = 0;       ///< user and system, all threads
-  double system_seconds = 0;    ///< the system's part of it; the kernel tells the two apart by its ticks
+  double system_seconds = 0;    ///< the system's part; accurate to the kernel's ticks
   std::size_t peak_memory = 0;  ///< peak memory of the process up to the end of the stage, bytes
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Quantities as people read them.
+// Human-readable quantities.
 #pragma once
 
 #include <cstddef>

@@ -64,13 +64,13 @@ Vec3<T> normalized(const Vec3<T>& a) {
   return l > T(0) ? a / l : Vec3<T>{};
 }
 
-/// The largest of the three.
+/// Largest component.
 template <class T>
 constexpr T max_component(const Vec3<T>& a) {
   return std::max(a.x, std::max(a.y, a.z));
 }
 
-/// The smallest of the three.
+/// Smallest component.
 template <class T>
 constexpr T min_component(const Vec3<T>& a) {
   return std::min(a.x, std::min(a.y, a.z));
@@ -99,7 +99,7 @@ bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// Two unit vectors that complete unit n to a right-handed frame (Duff et al. 2017, Building an Orthonormal
+/// Two unit vectors completing unit n to a right-handed frame (Duff et al. 2017, Building an Orthonormal
 /// Basis, Revisited).
 template <class T>
 void tangent_frame(const Vec3<T>& n, Vec3<T>& tangent, Vec3<T>& bitangent) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A vector whose memory is zero before anyone touches it.
+// A vector with lazily zeroed memory.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,9 @@
 
 namespace opaline {
 
-/// Takes zeroed pages from the system and leaves new elements as they are: what is never written costs no
-/// memory and no time (first touch of a 512 x 512 picture's layers: 12 ms, a fifth of the Lambert pass; most
-/// of a picture is often empty). For arithmetic types; elements coming back after the vector shrank keep
-/// their old values.
+/// Allocates zeroed pages from the system and does not initialize new elements: untouched memory costs no
+/// space and no time, as much of an image is often empty. For arithmetic types; elements reappearing after
+/// the vector shrank keep their old values.
 template <class T>
 struct ZeroedAllocator {
   using value_type = T;

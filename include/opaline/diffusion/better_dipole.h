@@ -8,10 +8,10 @@
 
 namespace opaline {
 
-/// Grosjean's diffusion coefficient; what leaves is taken from fluence and flux (d'Eon 2012, A Better Dipole;
-/// d'Eon & Irving 2011). It holds multiple scattering alone: light leaving after one collision is not in
-/// it. Adding that would make energy, for at alpha' = 1 the total is 1 already. Lengths and rates are in mean
-/// free paths, so every member is finite for sigma_a = 0 and a vanishing mean free path.
+/// Grosjean's diffusion coefficient, with exitance from fluence and flux (d'Eon 2012, A Better Dipole; d'Eon
+/// & Irving 2011). Multiple scattering only; adding single scattering would violate energy conservation, as
+/// the total is already 1 at alpha' = 1. Lengths and rates are in mean free paths, so every member is finite
+/// for sigma_a = 0 and a vanishing mean free path.
 struct BetterDipole {
   double mean_free_path = 0;  ///< 1/sigma_t', mm: depth of the real source
   double strength = 0;        ///< alpha'^2
@@ -25,7 +25,7 @@ struct BetterDipole {
 BetterDipole make_profile(const ReducedMedium& medium, std::type_identity<BetterDipole>);
 /// R_d(r), 1/mm^2, per transmitted flux, r >= 0 in mm.
 double diffuse_reflectance_profile(const BetterDipole& profile, double r);
-/// The fraction of the transmitted flux leaving within r, mm.
+/// Fraction of the transmitted flux leaving within r, mm.
 double diffuse_reflectance_within(const BetterDipole& profile, double r);
 /// alpha'^2/2 e^-s (C_E (1 + e^-4A mu) + C_phi/mu (1 - e^-4A mu)), s = sigma_tr, mu = s D.
 double total_diffuse_reflectance(const BetterDipole& profile);

@@ -8,8 +8,8 @@
 
 namespace opaline {
 
-/// Classical dipole (Jensen et al. 2001, sec. 2.2), both sources at positive distances: every member is finite
-/// for sigma_a = 0 and for a vanishing mean free path.
+/// Classical dipole (Jensen et al. 2001, sec. 2.2), with both sources at positive distances: every member is
+/// finite for sigma_a = 0 and for a vanishing mean free path.
 struct Dipole {
   double reduced_albedo = 0;  ///< alpha' = sigma_s' / sigma_t'
   double z_real = 0;          ///< depth of the real source, one mean free path 1/sigma_t', mm

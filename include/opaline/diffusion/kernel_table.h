@@ -13,14 +13,14 @@
 
 namespace opaline {
 
-/// R_d as piecewise cubics in s = (r / r_max)^2, 32 segments an octave of s, found from the bits of s. Between r_min and
-/// r_max the error is below 4e-6 of R_d wherever R_d is above 1e-9 of its largest value. Below r_min the table has the
-/// value at r_min, beyond r_max it is 0; the range is widened outward to whole octaves of s. Powers of two scale
-/// through it exactly.
+/// R_d as piecewise cubics in s = (r / r_max)^2, 32 segments an octave of s, found from the bits of s.
+/// Between r_min and r_max the error is below 4e-6 of R_d wherever R_d is above 1e-9 of its largest value.
+/// Below r_min the table has the value at r_min, beyond r_max it is 0; the range is widened outward to whole
+/// octaves of s. Powers of two scale through it exactly.
 class KernelTable {
  public:
   KernelTable() = default;
-  /// r_min, r_max in mm: the distances that will be asked for; the table ends earlier where R_d underflows.
+  /// r_min, r_max in mm: range of distances in use; the table ends earlier if R_d underflows.
   KernelTable(const DiffuseProfile& profile, double r_min, double r_max);
   /// The same of far_side_profile.
   static KernelTable of_far_side(const DiffuseProfile& profile, double r_min, double r_max);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The normalized diffusion profile of one channel (Christensen & Burley 2015), by one of four fits of its length.
+// The normalized diffusion profile of one channel (Christensen & Burley 2015), by one of four fits of its
+// length.
 #pragma once
 
 #include <array>
@@ -10,15 +11,17 @@
 
 namespace opaline {
 
-/// R_d(r) = A (exp(-r/d) + exp(-r/3d)) / (8 pi d r); includes single scattering. A is the exact albedo (half_space.h).
+/// R_d(r) = A (exp(-r/d) + exp(-r/3d)) / (8 pi d r); includes single scattering. A is the exact albedo
+/// (half_space.h).
 struct NormalizedDiffusion {
   double total = 0;  ///< A
   double d = 0;      ///< shape length, mm
 };
 
-/// Knots of the table of NormalizedDiffusionFit::refit (bench_normalized_diffusion). The nearest row stands for other etas.
+/// Knots of the table of NormalizedDiffusionFit::refit (bench_normalized_diffusion). Other etas use the
+/// nearest row.
 inline constexpr std::array<double, 7> kRefitEtas{.75, 1, 1.15, 1.3, 1.5, 2, 3};
-inline constexpr std::size_t kRefitAbsorptions = 11;  ///< fourth root of 1 - alpha': 0, .1, ... 1
+inline constexpr std::size_t kRefitAbsorptions = 11;  ///< fourth root of 1 - alpha': 0, 0.1, ... 1
 
 /// Diffuse entry fit d = l / (1.9 - A + 3.5 (A - 0.8)^2), l = mean free path in mm, A in [0, 1].
 NormalizedDiffusion make_normalized_diffusion(double mean_free_path, double total);

@@ -8,15 +8,16 @@
 
 namespace opaline {
 
-/// One channel of a medium by similarity: scattering without direction. 1 - alpha' is carried by itself,
-/// against cancellation.
+/// One channel of a medium by similarity: isotropic scattering. 1 - alpha' is separate, avoiding
+/// cancellation.
 struct ReducedMedium {
   double mean_free_path = 0;  ///< 1/sigma_t', >= 0
   double absorbed = 1;        ///< 1 - alpha' = sigma_a/sigma_t', [0, 1]
   double eta = 1;             ///< index of refraction, inside / outside
-  /// Thickness of the plate or body, in the unit of mean_free_path, > 0; infinite: a half space. Multipole alone asks.
+  /// Thickness of the plate or body, in the unit of mean_free_path, > 0; infinite: a half space. Used by
+  /// Multipole only.
   double thickness = std::numeric_limits<double>::infinity();
-  NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< normalized diffusion alone asks
+  NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< used by normalized diffusion only
 };
 
 }  // namespace opaline

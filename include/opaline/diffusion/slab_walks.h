@@ -8,13 +8,13 @@
 
 namespace opaline {
 
-/// Fractions of the light transmitted into one face: reflected there, and transmitted through the other face. The rest is
-/// absorbed.
+/// Fractions of the light transmitted into one face: reflected there, and transmitted through the other face.
+/// The rest is absorbed.
 struct SlabLight {
   double back = 0, through = 0;
 };
 
-/// An endless plate in diffuse light, by random walks with isotropic scattering and Fresnel's reflection at
+/// An infinite plate in diffuse light, by random walks with isotropic scattering and Fresnel reflection at
 /// both faces; standard error of each fraction below 0.5 / sqrt(walks).
 /// in    reduced_albedo in [0, 1]; optical_thickness in mean free paths, > 0; eta, inside over outside, > 0
 SlabLight slab_by_walks(double reduced_albedo, double optical_thickness, double eta, std::size_t walks);

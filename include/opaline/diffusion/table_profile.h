@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A radial profile of one channel by a table of its shape.
+// A radial profile of one channel, from a table of its shape.
 #pragma once
 
 #include <functional>
@@ -14,10 +14,10 @@ namespace opaline {
 /// Shape of a profile, lengths in mean free paths.
 struct ProfileShape {
   RadialTable table;    ///< table of integral 1
-  double integral = 1;  ///< over the plane, of the function that was tabulated
+  double integral = 1;  ///< integral of the tabulated function over the plane
 };
 
-/// A shape that the first thread to ask for it makes.
+/// A shape computed by the first thread requesting it.
 class LazyShape {
  public:
   using Make = std::function<std::shared_ptr<const ProfileShape>()>;
@@ -44,7 +44,7 @@ struct TableProfile {
 
 /// R_d(r) of diffuse light, 1/mm^2, per transmitted flux, r > 0 in mm (infinite at 0).
 double diffuse_reflectance_profile(const TableProfile& profile, double r);
-/// Fraction of the entered diffuse light leaving within r, mm.
+/// Fraction of the transmitted diffuse light leaving within r, mm.
 double diffuse_reflectance_within(const TableProfile& profile, double r);
 /// Total of diffuse light: half_space_albedo.
 double total_diffuse_reflectance(const TableProfile& profile);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far off sums over samples are, by trial sums at a few of them.
+// Error of sums over samples, from trial sums at a few of them.
 #pragma once
 
 #include "opaline/exitance/evaluate.h"
 
 namespace opaline {
 
-/// How much wider the near field of the comparison is.
+/// Width of the comparison's near field, over the default.
 inline constexpr double kWiderField = 1.41421356;
 
 struct CloudErrorInput {
@@ -17,13 +17,13 @@ struct CloudErrorInput {
   double tolerance = 0.005;
   double max_solid_angle = 0.05;
   InstructionSet instruction_set = InstructionSet::automatic;
-  std::array<float, 3> light_from_points{};  ///< fraction of the light coming from lights without area
+  std::array<float, 3> light_from_points{};  ///< fraction of the light from lights without area
 };
 
-/// The sums beside some 64 samples are compared with those of a near field that is sqrt(2) times as wide, whose
-/// plane is off a curved surface by twice as much and whose interpolated irradiance is smoother: the
-/// difference is about the error. So much smaller a tolerance tells the tree's error; what the irradiance of
-/// 512 samples is off their neighbours' mean, its roughness.
+/// Estimates the errors of a cloud of samples, from two trials. Sums at some 64 points are compared with a
+/// near field sqrt(2) times as wide, whose flatness error is twice as large and whose interpolated irradiance
+/// is smoother: the difference is about the error. A much smaller tolerance likewise gives the tree's error.
+/// The roughness is the deviation of 512 samples' irradiance from their neighbours' mean.
 CloudError tell_cloud_error(const CloudErrorInput& input);
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choice of points with additional shadow rays in the near field.
+// Stake of a point: condition for additional shadow rays in its near field.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,14 @@
 
 namespace opaline {
 
-/// Fraction of the exitance that hangs on the irradiance of the near field, from which NearFieldSampler traces
-/// shadow rays for points lying far apart. It traces them from less where pixels lie close together, but
-/// the estimated error of a cloud of samples does not know the picture. Measured on bunny-marble: with .005 in
-/// its place the estimate changes by less than .01 % of the light at 128 x 128, 512 x 512 and 1024 x 1024
-/// pixels.
+/// Least stake for which NearFieldSampler traces shadow rays from points far apart. Dense pixels use smaller
+/// stakes, but the estimated error of a cloud of samples does not depend on the image.
 inline constexpr float kRefinedStake = 0.02f;
 
-/// The fraction of the exitance that hangs on which irradiance is right: that at the place, or the samples'.
-/// in    own_irradiance: SplitKernel's; own: irradiance at the place; e: as evaluated there
-/// out   0 to 1, of the channel with the largest
+/// Stake: fraction of the exitance depending on the choice of the near field's irradiance, the point's own or
+/// the samples'.
+/// in    own_irradiance: SplitKernel's; own: irradiance at the point; e: evaluated there
+/// out   0 to 1, maximum over the channels
 inline float stake_of(const std::array<float, 3>& own_irradiance, const RgbF& own, const Exitance& e) {
   float most = 0;
   for (std::size_t c = 0; c < 3; ++c) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Places on a triangle cut into smaller ones, and second-order interpolation on one of them.
+// Points on a subdivided triangle, and second-order interpolation on one of its parts.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Nodes of a triangular lattice with this many segments along each side.
+/// Number of nodes of a triangular lattice with this many segments along each side.
 inline std::size_t lattice_size(std::uint32_t segments) {
   return (std::size_t(segments) + 1) * (std::size_t(segments) + 2) / 2;
 }
@@ -20,21 +20,21 @@ inline std::uint32_t lattice_index(std::uint32_t segments, std::uint32_t i, std:
   return j * (2 * segments + 3 - j) / 2 + i;
 }
 
-/// One of the cells^2 triangles that a triangle is cut into, and a place on it. Cells standing on their
-/// head, between three others, have their first corner at (i + 1, j + 1) and run backwards.
+/// A point in one of the cells^2 triangles dividing a triangle. Inverted cells, between three others, have
+/// their first corner at (i + 1, j + 1) and opposite axes.
 struct CellPlace {
   std::uint32_t i = 0, j = 0;
   bool upright = true;
   float u = 0, v = 0;  // within the cell
   std::uint32_t index(std::uint32_t cells) const { return j * (2 * cells - j) + 2 * i + (upright ? 0 : 1); }
-  /// Lattice coordinates of a point of the cell, itself cut into `parts`.
+  /// Lattice coordinates of a point of the cell, itself divided into `parts`.
   std::array<std::uint32_t, 2> node(std::uint32_t parts, std::uint32_t di, std::uint32_t dj) const {
     if (upright) return {parts * i + di, parts * j + dj};
     return {parts * (i + 1) - di, parts * (j + 1) - dj};
   }
 };
 
-/// The cell of a triangle cut into cells x cells that holds barycentrics u, v, and the place within it.
+/// Cell containing barycentrics u, v of a triangle divided into cells x cells, and the position within it.
 inline CellPlace cell_place(std::uint32_t cells, float u, float v) {
   const float x = std::max(0.0f, u * float(cells)), y = std::max(0.0f, v * float(cells));
   CellPlace place;
@@ -54,12 +54,12 @@ inline void add_scaled(Exitance& sum, const Exitance& e, float w) {
   sum.error += e.error * w;
 }
 
-/// The exitance that rests on the irradiance at the place itself, if that is `irradiance`.
+/// Exitance depending on the point's own irradiance, for this irradiance.
 inline RgbF own_part(const std::array<float, 3>& own_irradiance, const Exitance& e, const RgbF& irradiance) {
   return RgbF{own_irradiance[0], own_irradiance[1], own_irradiance[2]} * e.near * irradiance;
 }
 
-/// How far the exitance in the middle of an edge lies above the mean of its ends, by the slopes there.
+/// Difference of the exitance in the middle of an edge from the mean of its ends, by the slopes there.
 inline RgbF rise_between(const SurfaceCache::Vertex& a, const SurfaceCache::Vertex& b) {
   const Vec3f along = b.position - a.position;
   RgbF rise;
@@ -67,7 +67,7 @@ inline RgbF rise_between(const SurfaceCache::Vertex& a, const SurfaceCache::Vert
   return rise;
 }
 
-/// The quadratic with the values at the vertices and the middles that rise_between gives.
+/// Quadratic through the values at the vertices and the midpoints from rise_between.
 inline Exitance between_vertices(const SurfaceCache& cache, const SurfaceCache::Patch& patch, float u,
                                  float v) {
   const SurfaceCache::Vertex &a = cache.vertices[patch.vertices[0]], &b = cache.vertices[patch.vertices[1]],
@@ -82,8 +82,8 @@ inline Exitance between_vertices(const SurfaceCache& cache, const SurfaceCache::
   return e;
 }
 
-/// Six nodes of the quadratic through a cell's corners, in the order of SixNodes::offsets, and the middles of its
-/// sides.
+/// Six nodes of the quadratic: a cell's corners, and the midpoints of its sides, in the order of
+/// SixNodes::offsets.
 struct SixNodes {
   static constexpr std::array<std::array<std::uint32_t, 2>, 6> offsets{
       {{0, 0}, {2, 0}, {0, 2}, {1, 0}, {1, 1}, {0, 1}}};

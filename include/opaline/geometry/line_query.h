@@ -12,25 +12,25 @@
 
 namespace opaline {
 
-/// Crossings of lines with some meshes of a RayScene, which must outlive it.
+/// Intersections of lines with some meshes of a RayScene.
 class LineQuery {
  public:
-  /// meshes: of the world of `rays`, which must outlive the query.
+  /// meshes: of the world of `rays`; `rays` must outlive the query.
   LineQuery(const RayScene& rays, std::span<const std::uint32_t> meshes);
   ~LineQuery();
   LineQuery(LineQuery&&) noexcept;
   LineQuery& operator=(LineQuery&&) = delete;
 
-  /// Replaces `crossings` by every triangle that the ray meets between near and far, whichever side it shows,
-  /// each once, in no particular but a fixed order.
+  /// Replaces `crossings` by every triangle on the ray between near and far, either side, each once, in a
+  /// fixed but unspecified order.
   void find(const Ray& ray, std::vector<Hit>& crossings) const;
 
   struct Triangle {
     std::uint32_t mesh, triangle;
     std::array<Vec3f, 3> corners;
   };
-  /// Every triangle of any mesh whose bounding box meets the cube from `low` to `low` + side, in the order of
-  /// their numbers. Needs no query of one's own.
+  /// Every triangle of any mesh with a bounding box intersecting the cube from `low` to `low` + side, in the
+  /// order of their numbers.
   static std::vector<Triangle> triangles_in(const RayScene& rays, const Vec3f& low, float side);
 
  private:

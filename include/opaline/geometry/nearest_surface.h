@@ -10,7 +10,7 @@
 
 namespace opaline {
 
-/// Nearest points of some meshes of a RayScene, which must outlive it. Thread-safe.
+/// Nearest points on some meshes of a RayScene; must not outlive it. Thread-safe.
 class NearestSurface {
  public:
   NearestSurface(const RayScene& rays, std::span<const std::uint32_t> meshes);

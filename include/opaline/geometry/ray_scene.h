@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rays, and Embree's view of a world.
+// Ray tracing with Embree.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-/// A ray in the layout Embree traces, so batches need no copy (checked in ray_scene.cpp).
+/// A ray in Embree's layout, so batches need no copy (checked in ray_scene.cpp).
 struct alignas(16) Ray {
   Vec3f origin;
   float near = 0;
@@ -28,7 +28,7 @@ struct alignas(16) Ray {
       : origin(from), direction(towards), far(end) {}
 };
 
-/// Where a ray met a triangle, in Embree's layout.
+/// Hit of a ray, in Embree's layout.
 struct alignas(16) Hit {
   static constexpr std::uint32_t kMiss = ~0u;
   Vec3f edges_cross;   ///< geometric normal of any length
@@ -41,15 +41,14 @@ struct TracedRay {
   Hit hit;
 };
 
-/// How a ray structure is built. Rays meet the same triangles either way, at the same places; one meeting
-/// two at the same distance may be given the other one. On the bunny (69k triangles) `quick` takes .004 s in
-/// place of .025 s, and then camera rays take 0 to 5 % longer and shadow rays from all over the surface 15 %.
+/// Quality of a ray structure. Both give the same hits, up to the choice between two triangles at equal
+/// distance. `quick` builds faster and traces slower, incoherent rays most.
 enum class RayBuild { careful, quick };
 
 /// Ray queries against the meshes of a world. Batches of coherent rays are fastest (256 at once).
 class RayScene {
  public:
-  /// Builds the structure from copies; the world may go.
+  /// Builds the structure from copies of the meshes.
   explicit RayScene(const World& world, RayBuild build = RayBuild::careful);
   ~RayScene();
   RayScene(RayScene&&) noexcept;
@@ -57,26 +56,27 @@ class RayScene {
 
   /// Finds the first hit of each ray between near and far; far becomes its distance.
   void intersect(std::span<TracedRay> rays) const;
-  /// The same for a ray on its own way, which the statistics do not count: the clock would cost as much.
+  /// The same for a single ray, without statistics: reading the clock would cost as much.
   void intersect_one(TracedRay& ray) const;
-  /// Sets far < 0 for each ray meeting a triangle between near and far.
+  /// Sets far < 0 for each ray blocked between near and far.
   void occluded(std::span<Ray> rays) const;
 
-  /// Geometry at a place of a triangle, from the single precision vertices that the rays meet; offset is set.
+  /// Geometry at a point of a triangle, from the single-precision vertices of the ray structure; sets the
+  /// offset.
   SurfacePoint surface_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const;
 
-  /// How far to move the origin of a ray off the surface of a mesh, along the geometric normal: 2^-18 of
-  /// the mesh's diagonal, more where floats far from the middle of the world are coarser.
+  /// Offset of a ray's origin from the surface of a mesh, along the geometric normal: 2^-18 of the mesh's
+  /// diagonal, more where floats far from the middle of the world are coarser.
   float offset(const SurfacePoint& point) const { return point.offset > 0 ? point.offset : largest_offset_; }
   float offset(std::uint32_t mesh, const Vec3f& position) const;
 
-  /// Rays traced so far and the CPU time spent inside Embree for them, all threads: the floor of a render
-  /// pass. Every eighth batch is timed, for the clock itself costs as much as ten rays.
+  /// Number of rays so far and CPU time inside Embree, all threads: the minimum of a render pass. Times every
+  /// eighth batch only, as the clock costs as much as ten rays.
   struct Statistics {
     std::uint64_t rays = 0;
     double seconds = 0;
   };
-  /// Since the scene was built, all threads.
+  /// Since construction, all threads.
   Statistics statistics() const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace opaline {
 
-/// Geometry at a point of a triangle: everything shading and sampling ask for.
+/// Geometry at a point of a triangle, for shading and sampling.
 struct SurfacePoint {
   Vec3f position;    ///< in the world's space
   Vec3f normal;      ///< shading normal, unit
@@ -16,7 +16,7 @@ struct SurfacePoint {
   float offset = 0;  ///< RayScene::offset here, for rays from the point; 0: the largest mesh's
 };
 
-/// The point of a triangle at barycentrics u, v of its second and third corner; its offset is left 0.
+/// The point of a triangle at barycentrics u, v of its second and third corner; without an offset.
 SurfacePoint surface_point(const Mesh& mesh, std::uint32_t triangle, float u, float v);
 
 }  // namespace opaline

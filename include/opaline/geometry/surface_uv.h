@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// And how they change along the surface.
+/// With their gradients along the surface.
 struct SurfaceUv {
   std::array<float, 2> uv{};     ///< v upwards
   Vec3f gradient_u, gradient_v;  ///< along the surface, per length of the mesh's space
@@ -18,11 +18,11 @@ struct SurfaceUv {
 /// in    mesh: with UVs; u, v: barycentrics of the triangle's second and third corner
 SurfaceUv surface_uv(const Mesh& mesh, std::uint32_t triangle, float u, float v);
 
-/// Between those of the corners.
+/// Interpolated between the corners.
 /// in    mesh: with tangents
 Tangent surface_tangent(const Mesh& mesh, std::uint32_t triangle, float u, float v);
 
-/// The same of colors.
+/// Interpolated vertex colour.
 RgbF surface_color(const Mesh& mesh, std::uint32_t triangle, float u, float v);
 
 }  // namespace opaline

@@ -9,10 +9,10 @@
 
 namespace opaline {
 
-/// Appends channels of zeros. Pixels of zeros take no more memory than before.
+/// Appends channels of zeros. Empty pixels need no additional memory.
 void add_channels(Image& image, std::span<const std::string> names);
 
-/// Place of a channel among the picture's; it must be there.
+/// Index of an existing channel of the image.
 std::size_t channel_place(const Image& image, std::string_view name);
 
 }  // namespace opaline

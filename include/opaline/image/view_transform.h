@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tone mapping of light that may be brighter than white.
+// Tone mapping of colours above white.
 #pragma once
 
 #include "opaline/core/vec3.h"
@@ -7,10 +7,10 @@
 
 namespace opaline {
 
-/// The linear Rec.709 colour that a screen shows, each channel 0 to 1.
+/// Displayed linear Rec.709 colour, each channel 0 to 1.
 /// in    linear Rec.709, white 1, after exposure; finite
-/// from  neutral: Khronos Group 2024, PBR Neutral Tone Mapper specification; soft: its highlights without what it
-///       takes off everywhere; agx: Sobotka 2022, AgX, by the polynomial of Wrensch 2023, Minimal AgX Implementation
+/// from  neutral: Khronos Group 2024, PBR Neutral Tone Mapper specification; soft: its highlights without its
+///       offset; agx: Sobotka 2022, AgX, by the polynomial of Wrensch 2023, Minimal AgX Implementation
 RgbF shown_color(ViewTransform view, const RgbF& linear);
 
 }  // namespace opaline

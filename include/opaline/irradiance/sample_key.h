@@ -9,16 +9,16 @@
 
 namespace opaline {
 
-/// A sequence's shift, and the part of it: so many points of the sequence come before, in units of a point's rays.
+/// A sequence's shift, and the part of it: number of preceding points, in units of a point's rays.
 struct SequencePart {
   std::uint64_t shift, part;
 };
 
-// The upper 12 bits of a key that has a part; a key that is a hash has them by chance, and is as random then.
+// The upper 12 bits of a key with a part; a hash may have them by chance, and is equally random then.
 inline constexpr std::uint64_t kHasPart = 0xa5b;
 inline constexpr int kTagBits = 12, kPartBits = 16, kShiftBits = 64 - kTagBits - kPartBits;
 
-/// Place of i in a permutation of [0, count) that `key` chooses.
+/// Element i of a permutation of [0, count) given by `key`.
 constexpr std::uint64_t permuted(std::uint64_t i, std::uint64_t count, std::uint64_t key) {
   constexpr std::uint64_t kRounds = 4;
   const int bits = std::bit_width(count - 1), half = (bits + 1) / 2;
@@ -35,10 +35,10 @@ constexpr std::uint64_t permuted(std::uint64_t i, std::uint64_t count, std::uint
   return i;
 }
 
-/// The key of a camera ray among those of its pixel: together they take successive parts of one sequence, so the
-/// pixel's mean has the error of all their light samples as one set. Parts are in an order of the pixel's own: the
-/// places of its rays are points of the same sequence, each of which would send its light rays one way.
-/// in    ray: the rays of a pixel are numbered one after the other, from a multiple of samples_per_pixel
+/// Key of a camera ray within its pixel: the rays of a pixel use successive parts of one sequence, so the
+/// pixel's mean has the error of all their light samples as one set. The order of parts is random for each
+/// pixel: its ray positions come from the same sequence, and would correlate with light directions.
+/// in    ray: the rays of a pixel have successive numbers, from a multiple of samples_per_pixel
 inline std::uint64_t key_in_pixel(std::uint64_t ray, std::uint64_t samples_per_pixel) {
   if (samples_per_pixel == 1) return ray;
   const std::uint64_t pixel = ray / samples_per_pixel % (std::uint64_t(1) << kShiftBits),

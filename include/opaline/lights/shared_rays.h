@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lights sharing their rays: the channels of one picture.
+// Lights sharing their rays: the channels of one image.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// A sample of all of them at once, as sample_light gives it for each.
+/// A sample of all of them at once, with the weights of sample_light.
 /// in    lights: one, or up to three sharing their rays
 /// out   weights: of each light; the sample's own is the first's
 LightSample sample_lights(std::span<const Light> lights, const Vec3f& point, const Vec3f& normal,

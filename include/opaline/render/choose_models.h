@@ -12,25 +12,25 @@ namespace opaline {
 
 struct GroupPlan;
 
-/// Properties of a body's shape that decide the model.
+/// Shape properties determining the model.
 struct BodyShape {
   double area = 0;       ///< mm^2
   double thickness = 0;  ///< mean, mm: twice the volume over the area; 0 if a mesh is open
-  /// Mean squared cosine between the normals of two points of the surface: 1 of a thin plate, 1/2 of a rod, 1/3 of a
-  /// sphere or a cube.
+  /// Mean squared cosine between the normals of two points of the surface: 1 of a thin plate, 1/2 of a rod,
+  /// 1/3 of a sphere or a cube.
   double alignment = 0;
 
-  /// Plate thickness of a square plate of this area and mean thickness, mm: its rim is part of the area.
+  /// Thickness of a square plate with this area and mean thickness, mm: its rim is part of the area.
   double plate_thickness() const;
   bool is_flat() const;
 };
 
 struct BodyModel {
   ChosenProfile profile;
-  bool is_chosen = false;  ///< and not named by the scene
+  bool is_chosen = false;  ///< false: named by the scene
   std::string reason;
-  /// Rms of the radiant exitance against random walks over the mean, of the worst channel; none: unknown, of a profile
-  /// that the scene names, and of a mesh that is open.
+  /// Rms error of the radiant exitance against random walks over the mean, worst channel; none: unknown, for
+  /// profiles named by the scene and for open meshes.
   std::optional<double> expected_error;
   std::optional<double> expected_error_of_diffusion;  ///< the same of Method::volume_diffusion
 };
@@ -40,12 +40,12 @@ std::string model_text(const BodyModel& model);
 /// Text of the expected model error of a method; empty: unknown, or none.
 std::string model_error_text(const BodyModel& model, Method method);
 
-/// The rule and its figures are derived in src/diffusion/README.md; bench_volume_models measures them.
+/// Derived in src/diffusion/README.md; bench_volume_models measures the figures.
 BodyModel choose_model(const Medium& medium, const BodyShape& shape);
 
-/// Gives the media of a scene leaving their profile open (Medium::profile is none) that of the body they are in. A
-/// medium of bodies that ask for different ones becomes several media of its name.
-/// reference: bodies of another frame, whose profiles those of the same names take over
+/// Chooses the open profiles (Medium::profile is none) of a scene's media by their bodies. A medium with
+/// different choices becomes several media of the same name.
+/// reference: bodies of another frame; bodies of the same names use their profiles
 void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference = {});
 
 }  // namespace opaline

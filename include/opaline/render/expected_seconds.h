@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long an image takes.
+// Predicted render time.
 #pragma once
 
 #include "opaline/render/plan.h"
@@ -7,8 +7,8 @@
 
 namespace opaline {
 
-/// CPU time of an image, s, from costs that bench_plan measures; it may be wrong by a factor of 3.
-/// Settings that go on until an error is small enough are counted to their first estimate.
+/// CPU time of an image, s, from costs measured by bench_plan; accurate to a factor of 3. Settings with an
+/// error threshold are counted up to their first estimate.
 double expected_seconds(const Scene& scene, const Plan& plan);
 
 }  // namespace opaline

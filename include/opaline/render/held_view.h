@@ -21,10 +21,11 @@ class IrradianceLattice;
 /// Maximum size of cached gathered hits, bytes.
 inline constexpr std::size_t kMostGatheredBytes = std::size_t(256) << 20;
 
-/// Cached from image to image by Session::hold_view: 20 bytes per camera ray; per hit 4, 4 per light (8 with an estimated
-/// error), and 40 if memory allows; some 100 more for a rough boundary that reflects lights and surfaces, up to kMostCoatBytes
-/// in total; some 60 for each gathered ray with a hit, up to kMostGatheredBytes in total; and some 60 for each lattice point
-/// of near fields beside shadow edges, up to IrradianceLattice::kMostBytes per body.
+/// Cached from image to image by Session::hold_view. Bytes: 20 per camera ray; per hit 4, 4 per light (8 with
+/// an estimated error), and 40 if memory allows; some 100 more for a rough boundary reflecting lights and
+/// surfaces, up to kMostCoatBytes in total; some 60 for each gathered ray with a hit, up to
+/// kMostGatheredBytes in total; and some 60 for each lattice point of near fields beside shadow edges, up to
+/// IrradianceLattice::kMostBytes per body.
 struct HeldView {
   struct Coat;
   struct Gathering;
@@ -34,19 +35,19 @@ struct HeldView {
   };
   /// Hits of the camera rays of a batch on one kind of surface.
   struct Surface {
-    std::vector<PointTransfers> lights;  ///< one a light, without weights where it is to be traced
+    std::vector<PointTransfers> lights;  ///< one per light, without weights if still to be traced
     QueryPackets packets;
-    std::unique_ptr<Coat> coat;            ///< null: what it mirrors is to be found
-    std::unique_ptr<Gathering> gathering;  ///< gathering of hits without places around them (BouncedLight)
+    std::unique_ptr<Coat> coat;            ///< null: its reflection is still to be computed
+    std::unique_ptr<Gathering> gathering;  ///< for hits without cache points around them (BouncedLight)
   };
   /// Camera rays shaded together.
   struct Batch {
     bool is_traced = false;
     std::vector<CameraHit> hits;       ///< empty: all missed
-    std::vector<SurfacePoint> points;  ///< points of those that hit, in their order; empty: to be found
-    std::vector<Surface> surfaces;     ///< by kind; empty: not known
+    std::vector<SurfacePoint> points;  ///< surface points of the hits, in their order; empty: to be computed
+    std::vector<Surface> surfaces;     ///< by kind; empty: to be computed
 
-    /// Without the specular reflection and the gathering of its surfaces.
+    /// Excludes the specular reflection and the gathering of its surfaces.
     std::size_t bytes() const {
       std::size_t sum = hits.size() * sizeof(CameraHit) + points.size() * sizeof(SurfacePoint);
       for (const Surface& surface : surfaces)
@@ -55,7 +56,8 @@ struct HeldView {
       return sum;
     }
   };
-  /// Specular reflection of a rough boundary of one eta and roughness, without the colours of lights and surfaces.
+  /// Specular reflection of a rough boundary of one eta and roughness, without the colours of lights and
+  /// surfaces.
   struct Coat {
     /// Adds emission of the light * unit * weight to the radiance along a camera ray.
     struct OfLight {
@@ -63,11 +65,11 @@ struct HeldView {
       float unit, weight;
     };
     std::vector<OfLight> lights;
-    std::vector<TracedRay> mirrored;  ///< rays that met surfaces
-    std::vector<std::uint32_t> rays;  ///< rays of the camera, one a mirrored ray
-    std::vector<RgbF> shares;         ///< shares of what it sees
+    std::vector<TracedRay> mirrored;  ///< reflected rays with hits
+    std::vector<std::uint32_t> rays;  ///< camera rays of the reflected rays
+    std::vector<RgbF> shares;         ///< weights of their radiance
     std::vector<std::uint64_t> keys;  ///< for its light samples
-    Batch seen;                       ///< where the mirrored rays met surfaces; its hits are theirs
+    Batch seen;                       ///< surfaces hit by the reflected rays; its hits are theirs
 
     std::size_t bytes() const {
       return seen.bytes() + lights.size() * sizeof(OfLight) +
@@ -79,14 +81,14 @@ struct HeldView {
   struct Gathered {
     struct Met {
       Vec3f direction;
-      float far, cosine;  ///< cosine: with the normal of the point that gathers
+      float far, cosine;  ///< cosine: with the normal of the gathering point
       std::uint32_t mesh, triangle;
       float u, v;
       std::uint32_t point, number;  ///< index of the gathering point, and of its ray
     };
     bool is_traced = false;
     std::vector<Met> met;
-    Batch seen;  ///< how lights reach these places; it has no hits or points
+    Batch seen;  ///< light at the gathered hits; without hits and points
 
     std::size_t bytes() const {
       std::size_t sum = met.size() * sizeof(Met) + seen.bytes();
@@ -97,15 +99,15 @@ struct HeldView {
     }
   };
   struct Gathering {
-    std::vector<std::uint32_t> points;  ///< which of their batch gather
+    std::vector<std::uint32_t> points;  ///< indices of the gathering points in their batch
     std::vector<Gathered> parts;        ///< parts of a few points each, in their order
   };
   std::vector<std::vector<Batch>> tiles;  ///< in the order of their batches
-  bool has_room = false;                  ///< for the points
+  bool has_room = false;                  ///< enough memory for the points
   std::unique_ptr<std::atomic<std::size_t>> coat_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 
-  /// Gathering for the points of BouncedPlaces, by chunk and field, and for the samples of each body, by chunk, independent
-  /// of the camera (bounced_at_samples).
+  /// Gathering for the points of BouncedPlaces, by chunk and field, and for the samples of each body, by
+  /// chunk, independent of the camera (bounced_at_samples).
   std::vector<std::vector<Gathering>> at_places, at_samples;
   std::unique_ptr<std::atomic<std::size_t>> gathered_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 

@@ -14,28 +14,27 @@ namespace opaline {
 /// Result of one camera ray; zero if it hit nothing.
 struct PixelSample {
   RgbF diffuse{}, specular{};
-  RgbF emitted{};      ///< lights and surroundings seen directly
+  RgbF emitted{};      ///< radiance of directly visible lights and environments
   float coverage = 0;  ///< 1 on a surface
   RgbF albedo{}, irradiance{};
-  RgbF error{};           ///< error of diffuse, much the same for all rays of a pixel
-  Rgb noise{};            ///< variance of diffuse that is each ray's own
-  RgbF bias{};            ///< signed error of diffuse that rays of a pixel share
+  RgbF error{};           ///< error of diffuse, about equal for all rays of a pixel
+  Rgb noise{};            ///< variance of diffuse, independent between rays
+  RgbF bias{};            ///< signed error of diffuse, shared by rays of a pixel
   float translucent = 0;  ///< 1 on a translucent surface
   Vec3f normal{}, position{};
   float depth = 0;
 
-  /// True if no camera ray of the pixel met anything.
+  /// True if no camera ray of the pixel hit anything.
   bool empty() const { return coverage == 0 && emitted == RgbF{}; }
 };
 
-/// Layers that depend on the method.
+/// Layers depending on the method.
 struct MethodLayers {
-  bool variance = false;  ///< variance of the mean, in place of the irradiance
+  bool variance = false;  ///< variance of the mean, instead of the irradiance
   bool error = false;     ///< estimated standard error
 };
 
-/// Channel names, in the order in which store_pixel writes them. The irradiance of `volume` is that of opaque surfaces
-/// alone.
+/// Channel names in the order of store_pixel. The irradiance of `volume` covers opaque surfaces only.
 inline std::vector<std::string> layer_names(const MethodLayers& layers) {
   std::vector<std::string> names{"R", "G", "B", "A", "Z"};
   const auto add = [&](const std::string& layer, const std::string& parts) {
@@ -61,8 +60,8 @@ inline RgbF pixel_error(const PixelSample& sum, float all) {
 }
 
 /// Writes the mean of `count` samples to one pixel: radiance and coverage over all of them; albedo, normal,
-/// position, depth and irradiance over those that met a surface. sum.coverage counts these. Returns 1 if the
-/// pixel's radiance is not finite, else 0.
+/// position, depth and irradiance over those with a hit, counted by sum.coverage. Returns 1 if the pixel's
+/// radiance is not finite, else 0.
 inline std::size_t store_pixel(const PixelSample& sum, int count, const MethodLayers& layers, float* out) {
   const float all = 1.0f / float(count), seen = sum.coverage > 0 ? 1.0f / sum.coverage : 0.0f;
   const auto put = [&out](const Vec3f& value, float scale) {

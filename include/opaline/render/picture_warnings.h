@@ -11,12 +11,12 @@
 
 namespace opaline {
 
-/// Nothing in view, and where the shapes are; nothing lit, or all of it too dark or too bright for the
-/// exposure, and which lights are far, off or given for another unit of length. One line each.
+/// Warns of images without visible shapes, with the shapes' position; and of unlit, too dark or too bright
+/// ones, with lights that are distant, off or given in another unit of length. One line each.
 /// in    image: of the scene, with R G B and the coverage A
 std::vector<std::string> picture_warnings(const Scene& scene, const World& world, const Image& image);
 
-/// Lights whose side or cone has no surface in it, one line each, before an image is made.
+/// Warns of lights with no surface in their half space or cone, one line each, before rendering.
 std::vector<std::string> lights_that_miss(const Scene& scene, const World& world);
 
 }  // namespace opaline

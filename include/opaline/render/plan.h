@@ -14,8 +14,8 @@ namespace opaline {
 
 /// Translucent shapes sharing samples and one tree.
 struct GroupPlan {
-  std::string name;                   ///< the group's, or its only shape's
-  bool shared = false;                ///< a named group: others may join; a lone shape stays alone
+  std::string name;                   ///< the group's name, or that of its only shape
+  bool shared = false;                ///< a named group, open for other shapes, unlike a lone shape
   std::vector<std::uint32_t> meshes;  ///< indices into World::meshes
   std::size_t medium = 0;             ///< index into Scene::media
   double area = 0;                    ///< mm^2
@@ -28,24 +28,24 @@ struct GroupPlan {
   double smallest_mean_free_path = 0;      ///< over the scattering channels, mm
   double spacing = 0;                      ///< sqrt(area / samples), mm
   std::size_t samples = 0;
-  std::string reason;  ///< why this many
+  std::string reason;  ///< reason for this number
   double cell = 0;     ///< volume_diffusion: edge of its cells at the surface, mm
-  int cell_parts = 1;  ///< cell parts of that edge, for its samples: see cut_surface
+  int cell_parts = 1;  ///< divisions of the cell's edge for samples: see cut_surface
 };
 
 struct Plan {
   std::vector<GroupPlan> groups;      ///< empty: nothing translucent, no precompute
-  std::vector<std::string> stages;    ///< that will run, each with its reason
+  std::vector<std::string> stages;    ///< stages to run, each with its reason
   std::vector<std::string> warnings;  ///< one line each, with the likely fix
   std::size_t bytes =
-      0;  ///< expected peak: program, meshes, rays, samples, trees and a picture without empty pixels
+      0;  ///< expected peak: program, meshes, rays, samples, trees and an image without empty pixels
   std::size_t triangles = 0;
-  RayBuild rays = RayBuild::careful;  ///< quick where that costs the rays of one picture less than it saves
+  RayBuild rays = RayBuild::careful;  ///< quick if that saves more than it costs the rays of one image
 };
 
-/// Decides groups and sample counts, unless the settings say otherwise: spacing of the diffuse mean free
-/// path, but of one to one and a half mean free paths, in the channel where that is least; at least 10,000
-/// samples. Sampling error at that: under 1 % (mean) on every scene of the repository (test_default_samples).
+/// Plans bodies and sample counts unless set: a spacing of the diffuse mean free path, limited to one to one
+/// and a half mean free paths, in the channel with the least; at least 10,000 samples. The sampling error is
+/// then under 1 % (mean) on all example scenes (test_default_samples).
 Plan make_plan(const Scene& scene, const World& world);
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plan of a body in words, as the command line and the view show it.
+// Text of a body's plan for the command line and the view.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace opaline {
 
-/// "10,000 samples (the minimum)", or why another number.
+/// "10,000 samples (the minimum)", or the reason for another number.
 std::string samples_text(const GroupPlan& group);
 /// "mean free path 0.3 mm (smallest channel)"
 std::string mean_free_path_text(const GroupPlan& group);

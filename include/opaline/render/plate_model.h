@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The model's own error where it is largest and can be told at once: in thin plates.
+// Model error in thin plates, where it is largest and quick to compute.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@ struct PlateChannel {
   SlabLight profile, walks;
 };
 
-/// A flat body and what it does with diffuse light.
+/// A flat body and its reflectance and transmittance of diffuse light.
 struct PlateModel {
   std::string body;
   ProfileKind kind = ProfileKind::dipole;
   double thickness = 0;                                 ///< GroupPlan::thickness
-  std::array<std::optional<PlateChannel>, 3> channels;  ///< none: nothing scatters, or the plate is thick
+  std::array<std::optional<PlateChannel>, 3> channels;  ///< none: no scattering, or the plate is thick
 };
 
-/// Bodies thinner than ten mean free paths in some channel and many times wider than thick; about .02 s of
+/// Bodies thinner than ten mean free paths in some channel and many times wider than thick; about 0.02 s of
 /// CPU each, 1 s at an index of refraction of 10.
 std::vector<PlateModel> compare_plates(const Scene& scene, const Plan& plan);
 

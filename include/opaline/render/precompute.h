@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of translucent bodies and the light transmitted there: independent of the camera.
+// Samples of translucent bodies and their transmitted light: independent of the camera.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ struct Body {
   GroupPlan plan;
   DiffuseProfile profile;
   SurfaceSamples surface;
-  std::vector<LightTransfer> transfers;  ///< one a light
-  std::vector<RgbF> entering = {};       ///< entering_tints, one a sample; empty: none
+  std::vector<LightTransfer> transfers;  ///< one per light
+  std::vector<RgbF> entering = {};       ///< entering_tints, one per sample; empty: none
   std::map<Method, std::unique_ptr<MethodState>> states = {};
 };
 
@@ -43,7 +43,7 @@ struct PrecomputeInput {
   Monitor* monitor = nullptr;
 };
 
-// Stages that methods share; `group` is an index into the plan's groups, which chooses random numbers.
+// Stages shared by methods; `group` is an index into the plan's bodies, and selects random numbers.
 
 std::uint64_t sampling_seed(const Settings& settings, std::size_t group);
 /// cells: unless null, of the samples.
@@ -56,16 +56,17 @@ std::uint64_t point_irradiance_seed(const Settings& settings);
 std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
                                          std::span<const SurfaceSample> samples,
                                          std::span<const Light> lights);
-/// The scene's lights in the world's space and unit; where they are many, trees of them (ManyLights).
+/// The scene's lights in the world's space and unit, with trees (ManyLights) for many lights.
 std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 
-/// One minus the albedo of R G B, by reduced coefficients.
+/// 1 - albedo of R G B, from reduced coefficients.
 Rgb reduced_absorption(Medium medium);
 
-/// A body's surface where the cells of its plan cut it.
+/// A body's surface cut by the cells of its plan.
 CutSurface cut_surface(const PrecomputeInput& input, const Body& body);
-/// Irradiance at each body's samples from surfaces, translucent ones as their trees have it and opaque ones as lights
-/// alone light them; one list a body. view: where HeldView::at_samples are of the same samples, added to; or null
+/// Irradiance at each body's samples from surfaces: translucent ones from their trees, opaque ones under
+/// direct light; one list per body. view: cache with HeldView::at_samples for the same samples, extended; or
+/// null
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
                                                   HeldView* view = nullptr);
 
@@ -73,10 +74,10 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
 /// in    lights: those of its transfers
 std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights);
 
-/// Radiant exitance at points of a body's surface, for callers with points of their own. Where the mean free path is below
-/// the spacing of the samples, `render` traces shadow rays for the irradiance at its points; this interpolates it.
-/// in    body: prepared; points: world space, mm; normals: unit, outward, one a point
-/// out   M_o in W/mm^2, one a point
+/// Radiant exitance at arbitrary points of a body's surface. For mean free paths below the sample spacing,
+/// `render` traces shadow rays for the irradiance at its points; this function interpolates it.
+/// in    body: prepared; points: world space, mm; normals: unit, outward, one per point
+/// out   M_o in W/mm^2, one per point
 std::vector<RgbF> radiant_exitance(const Body& body, const World& world, std::span<const Vec3d> points,
                                    std::span<const Vec3f> normals, const Settings& settings);
 

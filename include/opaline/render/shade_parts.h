@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of a picture, to measure what the whole will cost.
+// Renders parts of an image to measure the cost of the whole.
 #pragma once
 
 #include <span>
@@ -9,15 +9,14 @@
 
 namespace opaline {
 
-/// The tiles that a picture is made of, row by row. They lie on a fixed grid of the whole picture and are
-/// whole even where a crop shows part of them: points evaluated together are the same, and so are a
-/// crop's pixels.
+/// Tiles of an image, row by row. They are on a fixed grid of the full image and complete even in a crop:
+/// points evaluated together are the same, and so are a crop's pixels.
 std::vector<Rectangle> tiles_of(const Film& film);
 
-/// The pixels of both; they must meet.
+/// Intersection of two overlapping rectangles.
 Rectangle common_part(const Rectangle& a, const Rectangle& b);
 
-/// Shades parts of a picture as render() does, and drops their pixels.
+/// Shades parts of an image like render(), and discards their pixels.
 /// in    parts: of tiles_of()
 void shade_parts(const RenderInput& input, std::span<const Rectangle> parts);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples fixed to a surface that moves or deforms.
+// Samples attached to a moving or deforming surface.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// A surface before and after: the same meshes in the same order, by their places in two worlds.
+/// A surface before and after: the same meshes in the same order, by their indices in two worlds.
 struct CarryInput {
   const World& from;
   std::span<const std::uint32_t> from_meshes;
@@ -28,17 +28,16 @@ bool can_carry(const World& from, std::span<const std::uint32_t> from_meshes, co
 
 struct CarriedSamples {
   SurfaceSamples surface;
-  bool rigid = false;  ///< the whole surface moved as one, within 1e-6 of its size: shares are as they were
+  bool rigid = false;  ///< the whole surface moved rigidly, within 1e-6 of its size: areas are unchanged
   std::size_t added = 0, removed = 0;
-  bool divided = false;  ///< shares were found, not carried
+  bool divided = false;  ///< cells were recomputed, not carried
 };
 
-/// Each sample at its place of its triangle (barycentrics), with the normal there. Where the surface bends,
-/// its cell bends with it: the parts of each triangle stay with their samples and keep their fraction of it, and
-/// areas and middles are theirs as they are now. Where it is squeezed until samples of one sheet are closer
-/// than kClosest radii some go; where it is stretched until a ball of kWidest radii is empty some come: the
-/// others stay, and all shares are divided anew. The result depends on the two surfaces alone, not on what
-/// lay between them.
+/// Keeps each sample at its barycentrics, with the normal there. On a deforming surface, its cell deforms as
+/// well: parts of each triangle stay with their samples and keep their fraction of it, giving current areas
+/// and centroids. Samples of one sheet closer than kClosest radii are removed; samples are added where a ball
+/// of kWidest radii is empty; the others stay, and all cells are recomputed. The result depends on the two
+/// surfaces alone, not on intermediate ones.
 CarriedSamples carry_samples(const CarryInput& input);
 
 inline constexpr float kClosest = 0.6f, kWidest = 1.5f;

@@ -9,11 +9,12 @@
 
 namespace opaline {
 
-/// Cuts the surface along a Morton curve through its triangles into `count` parts of equal area; each sample
-/// stands for one, and its centroid is the part's. Parts may span two sheets, and large triangles are cut at
-/// random: for a first look, some 50 times faster than sample_surface at a sixteenth of its samples.
+/// Divides the surface along a Morton curve through its triangles into `count` parts of equal area, with one
+/// sample each, and its centroid. Parts may span two sheets, and large triangles are divided at random: for
+/// previews, some 50 times faster than sample_surface at a sixteenth of its samples.
 /// in    meshes: of the world; count >= 1
-/// out   `count` samples whose areas sum to the surface's, ordered by mesh and triangle; none without area
+/// out   `count` samples with areas summing to the surface's, ordered by mesh and triangle; none for a
+///       surface without area
 SurfaceSamples draft_samples(const World& world, std::span<const std::uint32_t> meshes, std::size_t count);
 
 }  // namespace opaline

@@ -13,24 +13,24 @@
 namespace opaline {
 
 struct SurfaceSample {
-  std::uint32_t mesh = 0, triangle = 0;  ///< index into World::meshes, and there
+  std::uint32_t mesh = 0, triangle = 0;  ///< index into World::meshes, and of its triangle
   float u = 0, v = 0;                    ///< barycentrics of the second and third corner
   Vec3f position;                        ///< in the world's space and unit, as are all lengths here
   Vec3f normal;                          ///< shading normal
   float area = 0;                        ///< area of its Voronoi cell on the surface
-  /// Centroid of the cell. Sums over the surface place a sample's flux here, not at `position`: the
-  /// first-order term of their error then vanishes.
+  /// Centroid of the cell. Sums over the surface use it as the position of a sample's flux: the first-order
+  /// term of their error then vanishes.
   Vec3f centroid{};
 };
 
 struct SamplingInput {
   const World& world;
-  std::span<const std::uint32_t> meshes;  ///< which meshes of the world to cover as one surface
-  /// Samples wanted, >= 1. About 3 % more or fewer come out; more where parts are thinner than the spacing,
+  std::span<const std::uint32_t> meshes;  ///< meshes of the world covered as one surface
+  /// Requested samples, >= 1. The result differs by about 3 %; more where parts are thinner than the spacing,
   /// up to candidate_rounds x count + triangles.
   std::size_t count = 0;
   std::uint64_t seed = 0;
-  int candidate_rounds = 6;  ///< candidates tried = rounds x count; more: fuller, slower
+  int candidate_rounds = 6;  ///< number of candidates, over count; more: denser, slower
   Monitor* monitor = nullptr;
 };
 
@@ -42,16 +42,15 @@ struct SurfaceSamples {
   double spacing() const;
 };
 
-/// Two surface normals belong to one sheet unless they face away from each other: the two faces of a thin
-/// plate are sampled as if alone, a crease is not. cos 120 degrees.
+/// Cosine of 120 degrees: two normals belong to one sheet unless they face away from each other. The two
+/// faces of a thin plate are sampled separately, the sides of a crease together.
 inline bool same_sheet(const Vec3f& a, const Vec3f& b) {
   return dot(a, b) > -0.5f;
 }
 
-/// Samples whose places depend on the surface and the seed alone: not on the view, the lights, or the
-/// threads.
-/// out   every triangle's centroid has a sample of its sheet within two radii
-///       cells: unless null, receives each sample's cell, which takes a sixth more time
+/// Samples at positions depending on the surface and the seed alone, not on the view, the lights, or threads.
+/// out   every triangle's centroid has a sample of its sheet within two radii cells: null, or receives each
+///       sample's cell, which takes a sixth more time
 /// from  dart throwing in phase groups (Wei 2008) over a hash grid; areas: surface_shares
 SurfaceSamples sample_surface(const SamplingInput& input, SurfaceCells* cells = nullptr);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Enumerations of a scene, with the names used by scene files, options, reports and metadata
-// for it, in the order of the enumeration: names_of(value).
+// Enumerations of a scene, with the names used by scene files, options, reports and metadata in the order of
+// each enumeration: names_of(value).
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ constexpr NameList names_of(NormalizedDiffusionFit) {
 }
 
 enum class NormalMode {
-  smooth,   ///< angle-weighted average at each vertex, or the file's own normals where it has them
+  smooth,   ///< angle-weighted average at each vertex, or the file's own normals if present
   faceted,  ///< geometric normals
 };
 inline constexpr std::array<std::string_view, 2> kNormalNames{"smooth", "faceted"};
@@ -64,11 +64,11 @@ constexpr NameList names_of(PixelFilter) {
 }
 
 enum class Method {
-  hierarchical,  ///< diffusion from the tree of samples
-  lambert,       ///< translucent surfaces as plain paint: the floor of all costs
-  direct,        ///< the BSSRDF sampled at random: the reference of `hierarchical`, noisy instead of biased
-  volume,        ///< random walks inside the bodies: no model, the truth, noisy
-  volume_diffusion  ///< the diffusion equation solved inside the bodies: no kernel, no noise
+  hierarchical,     ///< diffusion from the tree of samples
+  lambert,          ///< diffuse reflection on translucent surfaces: the cheapest method
+  direct,           ///< importance sampling of the BSSRDF: the noisy reference of `hierarchical`
+  volume,           ///< random walks inside the bodies: the reference without a model, noisy
+  volume_diffusion  ///< the diffusion equation inside the bodies: no kernel, no noise
 };
 inline constexpr std::array<std::string_view, 5> kMethodNames{"hierarchical", "lambert", "direct", "volume",
                                                               "volume_diffusion"};
@@ -77,10 +77,10 @@ constexpr NameList names_of(Method) {
 }
 
 enum class EvaluatorKind {
-  automatic,      ///< surface_cache where a picture has many more points than it needs, else dual_tree
+  automatic,      ///< surface_cache if the image has many more points than the cache, else dual_tree
   dual_tree,      ///< clusters of points against nodes, to a tolerance
-  surface_cache,  ///< the same at places all over the surface, interpolated for each point
-  classic,        ///< each point walks the tree, as published
+  surface_cache,  ///< dual_tree at points over the surface, interpolated for each hit
+  classic,        ///< each point traverses the tree, as published
   brute_force     ///< every sample
 };
 inline constexpr std::array<std::string_view, 5> kEvaluatorNames{"automatic", "dual_tree", "surface_cache",
@@ -89,7 +89,7 @@ constexpr NameList names_of(EvaluatorKind) {
   return kEvaluatorNames;
 }
 
-/// Where the irradiance of the near field is taken from; mixed: as much of each as keeps the kernel's width.
+/// Source of the near field's irradiance; mixed: weights keeping the kernel's width.
 enum class NearIrradiance { mixed, samples, point };
 inline constexpr std::array<std::string_view, 3> kNearIrradianceNames{"mixed", "samples", "point"};
 constexpr NameList names_of(NearIrradiance) {
@@ -104,7 +104,7 @@ constexpr NameList names_of(InstructionSet) {
   return kInstructionSetNames;
 }
 
-/// How the numbers of a picture file stand for light.
+/// Encoding of an image file's numbers.
 enum class ColorSpace {
   automatic,  ///< sRGB for colours in integer files, otherwise linear
   srgb,
@@ -115,7 +115,7 @@ constexpr NameList names_of(ColorSpace) {
   return kColorSpaceNames;
 }
 
-/// How a PNG shows linear light, whose white is 1 (view_transform.h).
+/// Tone mapping of linear light with white at 1 for PNGs (view_transform.h).
 enum class ViewTransform {
   soft,     ///< unchanged below 0.8, compressed above
   neutral,  ///< Khronos PBR Neutral
@@ -134,8 +134,8 @@ constexpr NameList names_of(FilmColorSpace) {
   return kFilmColorSpaceNames;
 }
 
-/// Where a translucent body's tint t colours light: as it enters (pre), as it leaves (post), or by its root at both. With
-/// `medium` a texture of the medium's colour is no tint: the medium itself differs from place to place.
+/// Position of a translucent body's tint t: on entry (pre), on exit (post), or its root on both. With
+/// `medium`, a texture of the medium's colour varies the medium itself instead.
 enum class TextureMix { pre, post, split, medium };
 inline constexpr std::array<std::string_view, 4> kTextureMixNames{"pre", "post", "split", "medium"};
 constexpr NameList names_of(TextureMix) {

@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-/// One JSON value; as a member of an object it carries its key too.
+/// One JSON value; a member of an object includes its key.
 struct Node {
   enum class Kind { null, boolean, number, string, array, object };
 
@@ -25,7 +25,7 @@ struct Node {
   std::vector<Node> children;              ///< children of an array or object, in the order of the text
   std::string key;                         ///< key of a member of an object
   std::size_t key_offset = 0, offset = 0;  ///< bytes from the start of the text
-  std::size_t end_offset = 0;              ///< just behind the value's last byte; 0: not in the text
+  std::size_t end_offset = 0;              ///< just after the value's last byte; 0: not in the text
   int override_index = -1;                 ///< index of its override; -1: the file
 };
 
@@ -43,10 +43,10 @@ struct Document {
 /// Offset of each line's first byte.
 std::vector<std::size_t> line_starts_of(std::string_view text);
 
-/// Where a byte of the document's text stands, or which override it came from.
+/// Line and column of a byte of the document's text, or the override with this index.
 SourcePlace place_at(const Document& document, std::size_t offset, int override_index);
 
-/// An error at a byte of the document's text, or about the override that put the value there.
+/// An error at a byte of the document's text, or about the override providing the value.
 Error error_at(const Document& document, std::size_t offset, int override_index, std::string message,
                std::string expected = {}, std::string got = {});
 
@@ -59,7 +59,7 @@ const Node* find_member(const Node& object, std::string_view key);
 /// exceeded
 Node parse_tree(const Document& document, std::string_view text, int override_index = -1);
 
-/// The value as JSON, without its key; short lists and objects on one line. Numbers stay as they were written.
+/// The value as JSON, without its key; short lists and objects on one line. Numbers keep their spelling.
 std::string to_json(const Node& node);
 
 constexpr int max_depth = 64;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a scene file (JSON with comments) to a Scene; every key is described in scenes/README.md.
+// Loads a scene file (JSON with comments); scenes/README.md documents every key.
 #pragma once
 
 #include <optional>
@@ -11,43 +11,41 @@
 
 namespace opaline {
 
-/// Reads and checks a scene file, or an asset (GLB, glTF, OBJ) as what import_asset makes of it; lengths are converted to mm by its mm_per_unit.
+/// Reads and checks a scene file, or an asset (GLB, glTF, OBJ) converted by import_asset; lengths are
+/// converted to mm by its mm_per_unit.
 /// in    overrides: "media.marble.eta=1.4": a path of keys (array elements by index or by "name") and a JSON
-/// value
-///       (a value that is not JSON is taken as a string), applied before checking
-/// error Error{bad_input} with file, line and column, what was expected, what was found, and the nearest
-/// valid
+///       value (other texts are strings), applied before checking; frame: of keyed values and mesh sequences
+/// error Error{bad_input} with file, line and column, the expected and the given value, and the nearest valid
 ///       name: no such file, broken JSON, unknown or duplicate key, wrong type, value out of range
-/// frame: which one, of values and mesh files that change.
 Scene load_scene(const std::string& path, std::span<const std::string> overrides = {}, int frame = 1);
 
-/// The same from text; `file` stands in messages and its folder in front of relative mesh paths.
+/// The same from text; `file` names it in messages, and its folder is the base of relative mesh paths.
 Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides = {},
                   int frame = 1);
 
-/// The text of a scene file.
+/// Text of a scene file.
 /// error Error{bad_input}: no such file, a folder, a mesh, more than 64 MiB
 std::string read_scene_text(const std::string& path);
 
-/// A scene's text with the overrides applied, as JSON: in a file of the same folder it is the scene that parse_scene
-/// reads of both. Comments are left out, numbers stay as they were written.
-/// frame: unless none, each value that changes is replaced by its value at this frame
-/// error as parse_scene, for what it checks before values
+/// A scene's text with the overrides applied, as JSON without comments; numbers keep their spelling. In a
+/// file of the same folder, it gives the same scene as text and overrides.
+/// frame: replaces keyed values by their value at this frame; none: keeps them
+/// error as parse_scene, for checks before those of values
 std::string merged_scene(std::string_view text, const std::string& file,
                          std::span<const std::string> overrides, std::optional<int> frame = {});
 
-/// The same as a person would edit the file: what no override changes stays as it is written, comments included
+/// Minimal edit of the file: parts not changed by an override keep their spelling, including comments
 /// (src/scene/edited_text.h).
 /// error as merged_scene
 std::string edited_scene(std::string_view text, const std::string& file,
                          std::span<const std::string> overrides);
 
-/// The last run of two or more # in a path as the frame's number, with zeros in front to fill them:
-/// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths stay as they are.
+/// Replaces the last run of two or more # in a path by the frame's number, padded with zeros:
+/// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths are unchanged.
 std::string with_frame(const std::string& path, int frame);
 
-/// A medium by itself: a JSON object such as a member of a scene's `media`; its name is "medium".
-/// in    file: what messages call the text
+/// A single medium: a JSON object as in a scene's `media`; its name is "medium".
+/// in    file: name of the text in messages
 /// error as parse_scene
 Medium parse_medium(std::string_view text, const std::string& file);
 

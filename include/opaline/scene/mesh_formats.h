@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of mesh formats. A file in geometry/formats/ reads each.
+// Names of mesh formats, each read by a file in geometry/formats/.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace opaline {
 
-/// As users know them; in lower case the names of their files end so, after a dot.
+/// Usual names; in lower case after a dot, they are the files' extensions.
 inline constexpr std::array<std::string_view, 6> kMeshFormats{"OBJ", "PLY", "STL", "OFF", "GLB", "glTF"};
 
 }  // namespace opaline

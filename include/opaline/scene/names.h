@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// The word for a value of an enumeration of enumerations.h.
+/// Name of a value of an enumeration of enumerations.h.
 template <class Enumeration>
 std::string_view name_of(Enumeration value) {
   const NameList names = names_of(value);
@@ -17,7 +17,7 @@ std::string_view name_of(Enumeration value) {
   return names[std::size_t(value)];
 }
 
-/// The word for a kind of light.
+/// Name of a kind of light.
 inline std::string_view name_of(const LightSource& source) {
   return std::visit([](const auto& light) { return light.kType; }, source);
 }

@@ -42,23 +42,24 @@ inline Transform compose(const Transform& second, const Transform& first) {
 // ---- textures -------------------------------------------------------------------------------------------
 
 class TextureFile;
-/// A picture in place of a constant, laid over a surface by the UVs of its mesh.
+/// An image replacing a constant, mapped by the mesh's UVs.
 struct Texture {
   std::shared_ptr<const TextureFile> file;
-  Rgb scale{1, 1, 1};       ///< times its colours; the first one times its numbers
+  Rgb scale{1, 1, 1};       ///< factor on its colours; the first one on its numbers
   std::size_t channel = 0;  ///< channel of the file, for a number
-  /// From UVs to the picture, about its upper left corner: scaled, turned (degrees), moved (KHR_texture_transform).
+  /// From UVs to the image, about its upper left corner: scaled, rotated (degrees), translated
+  /// (KHR_texture_transform).
   std::array<double, 2> uv_offset{0, 0}, uv_scale{1, 1};
   double uv_rotation = 0;
-  bool is_relative = false;  ///< scaled to a mean of 1: its texels may exceed 1, other colours may not
+  bool is_relative = false;  ///< scaled to a mean of 1: its texels may exceed 1, unlike other colours
   SourcePlace place{};
   friend bool operator==(const Texture&, const Texture&) = default;
 };
 
-/// A rough boundary that mirrors differently along and across a tangent: that of growing u, or, where the mesh has no UVs,
-/// the level one, at right angles to +y.
+/// An anisotropic boundary, with different roughness along and across a tangent: the direction of u, or
+/// without UVs the horizontal one, perpendicular to +y.
 struct Grain {
-  double anisotropy = 0;  ///< [0, 1], specular_roughness_anisotropy of OpenPBR: 0 is the same all around
+  double anisotropy = 0;  ///< [0, 1], specular_roughness_anisotropy of OpenPBR: 0 is isotropic
   double rotation = 0;    ///< rotation of the tangent about the normal, counterclockwise, degrees
   friend bool operator==(const Grain&, const Grain&) = default;
 };
@@ -93,10 +94,11 @@ struct Medium {
   double eta = 1.3;
   std::optional<ProfileKind> profile = ProfileKind::dipole;  ///< none: chosen for each body (choose_models.h)
   SourcePlace place{};
-  /// Mean cosine g of the scattering angle, (-1, 1), where the coefficients are reduced ones. Random walks alone
-  /// follow it; diffusion knows no more than (1 - g) sigma_s.
+  /// Mean cosine g of the scattering angle, (-1, 1), with reduced coefficients. Used by random walks only;
+  /// diffusion depends on (1 - g) sigma_s alone.
   double scatter_anisotropy = 0;
-  /// Thickness of the plates and bodies made of it, mm, > 0; infinite: thick. ProfileKind::multipole alone asks.
+  /// Thickness of the plates and bodies made of it, mm, > 0; infinite: thick. Used by ProfileKind::multipole
+  /// only.
   double thickness = std::numeric_limits<double>::infinity();
   double specular_roughness = 0;  ///< roughness of the dielectric boundary, [0, 1]; GGX's alpha is its square
   /// Tint of its light: t = tint x texture, in [0, 1] except for textures with mean 1.
@@ -105,14 +107,14 @@ struct Medium {
   TextureMix texture_mix = TextureMix::split;
   /// Texture of ArtistMedium::subsurface_radius over its mean; the record stores the mean.
   std::optional<Texture> radius_texture{};
-  /// Fraction of the light scattering inside, [0, 1]; the rest is reflected diffusely at the surface, by base_color.
+  /// Fraction of the light scattering inside, [0, 1]; the rest is reflected diffusely at the surface, by
+  /// base_color.
   double subsurface_weight = 1;
   Rgb base_color{.8, .8, .8};
-  std::optional<Texture> weight_texture{}, base_texture{};  ///< times these
-  ChosenProfile chosen{};                                   ///< where profile is none
-  NormalizedDiffusionFit fit =
-      NormalizedDiffusionFit::refit;  ///< ProfileKind::normalized_diffusion alone asks
-  Grain grain{};                      ///< grain of the boundary
+  std::optional<Texture> weight_texture{}, base_texture{};     ///< factors
+  ChosenProfile chosen{};                                      ///< if profile is none
+  NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< for ProfileKind::normalized_diffusion
+  Grain grain{};                                               ///< grain of the boundary
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
@@ -121,7 +123,7 @@ inline bool is_partly_opaque(const Medium& medium) {
   return medium.subsurface_weight < 1 || medium.weight_texture;
 }
 
-/// True if textures vary the colour, or the colour or radius, of the medium inside its bodies. Methods that use a radial
+/// True if textures vary the medium's colour, or colour or radius, inside its bodies. Methods with a radial
 /// profile ignore this (SubsurfaceMethod::follows_textures_inside).
 inline bool has_color_inside(const Medium& medium) {
   return medium.texture_mix == TextureMix::medium && medium.tint_texture;
@@ -143,26 +145,27 @@ inline NormalizedDiffusionFit profile_fit(const Medium& medium) {
 // ---- shapes ---------------------------------------------------------------------------------------------
 
 struct MeshFile {
-  std::string path;         ///< as opened: the scene file's folder is already in front of a relative path
-  bool fill_holes = false;  ///< close every hole before rendering
-  /// If set: scale so that the largest side of the bounding box is this long (mm), centre x and z on the
-  /// origin, and stand the mesh on y = 0; applied before the shape's transform.
+  std::string path;         ///< as opened: the scene file's folder precedes a relative path
+  bool fill_holes = false;  ///< closes every hole before rendering
+  /// If set: scales the largest side of the bounding box to this length (mm), centres x and z on the origin,
+  /// and moves the mesh to y >= 0; applied before the shape's transform.
   std::optional<double> fit_size;
-  /// Part of a file with several meshes: the indices "mesh/primitive" of a glTF asset, or the material name of an OBJ.
-  /// Empty: the whole file.
+  /// Part of a file with several meshes: the indices "mesh/primitive" of a glTF asset, or the material name
+  /// of an OBJ. Empty: the whole file.
   std::string part{};
-  /// True: vertex colours multiply the surface's colour; none: they do unless a texture gives that colour.
+  /// True: vertex colours multiply the surface's colour; none: they do unless a texture defines that colour.
   std::optional<bool> vertex_colors{};
-  /// Where it has no normals: edges that bend by more are sharp, degrees, [0, 180]; none: as the file says.
+  /// Without normals: edges with a larger angle are creases, degrees, [0, 180]; none: by the file.
   std::optional<double> crease_angle{};
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
-/// Most fineness of a built-in curved shape: 4^fineness times as many triangles. 6 leaves .00005 of a sphere's area out,
-/// and each one less four times that.
+/// Tessellation levels of built-in curved shapes: 4^fineness times as many triangles. The largest omits
+/// 0.00005 of a sphere's area, each lower one four times as much.
 constexpr int kMostFineness = 6, kLeastFineness = 4;
 
-// Built-in shapes; lengths in mm. `Slab` is a box named for its use: x and z extent, thickness along y.
+// Built-in shapes; lengths in mm. `Slab` is a box with a separate thickness: x and z extent, thickness along
+// y.
 struct SphereShape {
   Vec3d center{};
   double radius = 1;
@@ -191,16 +194,17 @@ struct TorusShape {  ///< axis along y
 
 using ShapeSource = std::variant<MeshFile, SphereShape, BoxShape, QuadShape, SlabShape, TorusShape>;
 
-/// Specular reflection of an opaque surface: GGX facets of a dielectric over its colour, or of a metal of that colour.
+/// Specular reflection of an opaque surface: GGX facets of a dielectric over its colour, or of a metal with
+/// that colour.
 struct Gloss {
   double metalness = 0, roughness = 1;  ///< [0, 1]; the square of the latter is GGX's alpha
   std::optional<Texture> metalness_texture{}, roughness_texture{};
-  double eta = 1.5;  ///< eta of the dielectric, outside air
+  double eta = 1.5;  ///< eta of the dielectric
   Grain grain{};
   friend bool operator==(const Gloss&, const Gloss&) = default;
 };
 
-/// Reflectance of an opaque shape unless the scene gives it.
+/// Reflectance of an opaque shape without one in the scene.
 inline constexpr Rgb kDefaultReflectance{0.5, 0.5, 0.5};
 
 struct Shape {
@@ -211,14 +215,13 @@ struct Shape {
   /// Index into Scene::media, or none for an opaque Lambert surface of `reflectance`.
   std::optional<std::size_t> medium;
   Rgb reflectance = kDefaultReflectance;
-  bool has_reflectance = false;  ///< the scene gives it; else vertex colours stand for it
-  /// Translucent shapes with the same non-empty group blend as one object; others never bleed into each
-  /// other.
+  bool has_reflectance = false;  ///< given in the scene; otherwise vertex colours replace it
+  /// Translucent shapes with the same non-empty group form one body; light never bleeds between others.
   std::string group;
   SourcePlace place{};                           ///< place of its source
   std::optional<Texture> reflectance_texture{};  ///< times the reflectance
-  std::optional<Texture> normal_map{};           ///< its scale is of the slopes
-  std::optional<Texture> bump_map{};             ///< heights; its scale is mm
+  std::optional<Texture> normal_map{};           ///< its scale applies to the slopes
+  std::optional<Texture> bump_map{};             ///< heights; its scale is in mm
   std::optional<Gloss> gloss{};                  ///< specular reflection of an opaque shape; none: diffuse
   friend bool operator==(const Shape&, const Shape&) = default;
 };
@@ -227,25 +230,25 @@ struct Shape {
 
 struct PointLight {
   static constexpr std::string_view kType = "point";
-  static constexpr bool kCanBeSeen = false;  ///< by a camera: it has the key `visible`
+  static constexpr bool kCanBeSeen = false;  ///< the key `visible` exists
   Vec3d position;
   Rgb intensity;  ///< W/sr; irradiance at distance d mm is intensity / d^2 in W/mm^2
   friend bool operator==(const PointLight&, const PointLight&) = default;
 };
-struct SpotLight {  ///< a point's light within a cone
+struct SpotLight {  ///< a point light within a cone
   static constexpr std::string_view kType = "spot";
   static constexpr bool kCanBeSeen = false;
   Vec3d position;
-  Vec3d direction;          ///< unit, the way its middle shines
-  Rgb intensity;            ///< along the middle, W/sr
-  double outer_angle = 45;  ///< from the middle to the rim, degrees, (0, 90]
-  double inner_angle = 0;   ///< to where it begins to fade, degrees, below outer_angle
+  Vec3d direction;          ///< unit, axis of emission
+  Rgb intensity;            ///< on the axis, W/sr
+  double outer_angle = 45;  ///< from the axis to the rim, degrees, (0, 90]
+  double inner_angle = 0;   ///< from the axis to the beginning of the falloff, degrees, below outer_angle
   friend bool operator==(const SpotLight&, const SpotLight&) = default;
 };
 struct DirectionalLight {
   static constexpr std::string_view kType = "directional";
   static constexpr bool kCanBeSeen = true;
-  Vec3d direction;   ///< unit, the way the light travels
+  Vec3d direction;   ///< unit, of propagation
   Rgb irradiance;    ///< on a surface facing it, W/mm^2
   double angle = 0;  ///< the disc's full angle, degrees, [0, 90]; 0: parallel light
   friend bool operator==(const DirectionalLight&, const DirectionalLight&) = default;
@@ -265,34 +268,34 @@ struct QuadLight {  ///< emits on the side of u x v only
   Rgb radiance;
   friend bool operator==(const QuadLight&, const QuadLight&) = default;
 };
-struct Surroundings {  ///< the same radiance from everywhere
+struct Surroundings {  ///< uniform radiance from all directions
   static constexpr std::string_view kType = "surroundings";
   static constexpr bool kCanBeSeen = false;
   Rgb radiance;
   friend bool operator==(const Surroundings&, const Surroundings&) = default;
 };
 class EnvironmentPicture;
-/// A picture's radiance, by direction. A coloured picture becomes three lights of one name, a channel each: so what
-/// arrives from each of them is one number, as from any light.
+/// Environment map. A coloured image becomes three lights of one name, one per channel, so each light's
+/// irradiance is one number, as for other lights.
 struct EnvironmentLight {
   static constexpr std::string_view kType = "environment";
   static constexpr bool kCanBeSeen = true;
   std::shared_ptr<const EnvironmentPicture> picture;
-  Rgb strength{1, 1, 1};               ///< times its radiance
+  Rgb strength{1, 1, 1};               ///< factor on its radiance
   double rotation = 0;                 ///< about +y, counterclockwise seen from above, degrees
-  std::optional<std::size_t> channel;  ///< it shines in this one alone; none: the picture is grey
+  std::optional<std::size_t> channel;  ///< its only channel; none: the image is grey
   friend bool operator==(const EnvironmentLight&, const EnvironmentLight&) = default;
 };
 class LightTree;
-/// Many lights as one, of which each point draws a few. No scene file has it: lights become it once they are in the
-/// world's space, where they are many (with_trees in lights/light_tree.h). Of different colours they become three of
-/// one name, a channel each.
+/// Many lights as one, sampled a few at a time at each point. Scene files do not contain it: with_trees
+/// (lights/light_tree.h) makes it from many lights in the world's space. Lights of different colours become
+/// three of one name, one per channel.
 struct ManyLights {
   static constexpr std::string_view kType = "many";
   static constexpr bool kCanBeSeen = false;
   std::shared_ptr<const LightTree> tree;
   Rgb strength{1, 1, 1};               ///< times the tree's colours
-  std::optional<std::size_t> channel;  ///< it shines in this one alone; none: all lights have one colour
+  std::optional<std::size_t> channel;  ///< its only channel; none: all lights have one colour
   friend bool operator==(const ManyLights&, const ManyLights&) = default;
 };
 
@@ -300,14 +303,14 @@ using LightSource = std::variant<PointLight, SpotLight, DirectionalLight, Sphere
                                  Surroundings, EnvironmentLight, ManyLights>;
 
 struct Light {
-  std::string name;  ///< the channels of one picture have the same
+  std::string name;  ///< equal for the channels of one image
   LightSource source;
   SourcePlace place{};
-  bool is_seen = true;  ///< by the camera; others see it all the same, boundaries that reflect it among them
+  bool is_seen = true;  ///< by the camera; reflections show the light in any case
   friend bool operator==(const Light&, const Light&) = default;
 };
 
-// ---- picture --------------------------------------------------------------------------------------------
+// ---- image ----------------------------------------------------------------------------------------------
 
 struct Camera {
   Vec3d position{0, 0, 5}, look_at{0, 0, 0}, up{0, 1, 0};
@@ -328,16 +331,16 @@ struct Film {
   friend bool operator==(const Film&, const Film&) = default;
 };
 
-/// Default entry samples of `direct`, where neither Settings::entry_samples nor Settings::until_error says.
+/// Default entry samples of `direct`, without Settings::entry_samples and Settings::until_error.
 inline constexpr std::size_t kDefaultEntrySamples = 256;
 
 /// Switches for experiments with the methods themselves (docs/laboratory.md).
 struct Laboratory {
   InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
-  double max_solid_angle = 0.05;  ///< classic: open a node when area / distance^2 exceeds it, sr
-  bool near_field = true;         ///< split the kernel near the shading point
+  double max_solid_angle = 0.05;  ///< classic: opens a node if area / distance^2 exceeds it, sr
+  bool near_field = true;         ///< splits the kernel near the shading point
   NearIrradiance near_irradiance = NearIrradiance::mixed;
-  EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: how entry points are drawn
+  EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: sampling of entry points
   friend bool operator==(const Laboratory&, const Laboratory&) = default;
 };
 
@@ -353,10 +356,10 @@ struct Settings {
   std::optional<double>
       until_error;             ///< direct, volume: stop at this estimated relative error of the pixels, cells
   bool reenter = true;         ///< volume: enables re-entry of light into a body
-  double cell_size = 2;        ///< volume_diffusion: of the cells at the surface, mean free paths
+  double cell_size = 2;        ///< volume_diffusion: size of the cells at the surface, mean free paths
   std::optional<int> bounces;  ///< 1: one bounce of light between surfaces; none: bounces_of()
   std::uint64_t seed = 0;
-  int reference_frame = 1;  ///< frame in which samples are placed; they move with the surface in others
+  int reference_frame = 1;  ///< frame of the samples' placement; in others, they move with the surface
   Laboratory laboratory{};
   friend bool operator==(const Settings&, const Settings&) = default;
 };
@@ -364,7 +367,7 @@ struct Settings {
 struct Scene {
   std::string file;         ///< for messages
   std::string translation;  ///< summary of an asset's import, one line; empty: a scene file
-  /// Deprecated spellings in the file, and deviations from an asset that change the image, one line each.
+  /// Warnings of deprecated spellings and of deviations from an asset, one line each.
   std::vector<std::string> warnings;
   std::size_t asset_bytes = 0;  ///< memory of an asset's records
   double mm_per_unit = 1;       ///< unit of the file, for output in its units; all lengths here are mm
@@ -374,20 +377,20 @@ struct Scene {
   Camera camera;
   Film film;
   Settings settings;
-  /// Frames from the first key of the camera or film to the last where nothing else changes from frame to
-  /// frame: pictures of the same surfaces in the same light; else 1.
+  /// Frames from the first key of the camera or film to the last, if nothing else is keyed: images of the
+  /// same surfaces under the same light; otherwise 1.
   std::size_t camera_frames = 1;
   friend bool operator==(const Scene&, const Scene&) = default;
 };
 
-/// How often light goes from one surface to another: Settings::bounces, or 1 where one thing that sends light back can
-/// light another and the method knows of it. A body does not light itself unless it is asked for.
+/// Number of bounces between surfaces: Settings::bounces, or by default 1 if one reflecting shape can
+/// illuminate another and the method supports it. A body illuminates itself only on request.
 int bounces_of(const Scene& scene);
-/// The textures of a shape and of its medium.
+/// Textures of a shape and of its medium.
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
-/// True if a shape's mesh has to have UVs.
+/// True if a shape's mesh needs UVs.
 bool needs_uvs(const Scene& scene, const Shape& shape);
-/// Grain of a shape whose boundary is rough and has one; else null.
+/// Anisotropy of a shape's rough boundary; null for smooth or isotropic ones.
 const Grain* grain_of(const Scene& scene, const Shape& shape);
 
 /// Surface coordinates read with a mesh: UVs, and tangents if the file has them.

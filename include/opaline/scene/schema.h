@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The keys of a scene file: one row a key. The reader takes its checks from the rows, `--set` and error
-// messages their names, the picture's metadata its values, scenes/README.md and docs/laboratory.md their tables, and editors
-// their JSON Schema.
+// Keys of a scene file, one row each: source of the reader's checks, the names in `--set` and error messages,
+// the image's metadata, the tables in scenes/README.md and docs/laboratory.md, and the editors' JSON Schema.
 #pragma once
 
 #include <span>
@@ -12,14 +11,14 @@
 
 namespace opaline {
 
-/// The numbers from low to high, with or without the ends.
+/// Interval from low to high, each end included or not.
 struct Range {
   double low, high;
   bool without_low = false, without_high = false;
 };
 
 inline constexpr Range kNonNegative{0, 1e30}, kUnitInterval{0, 1}, kFiniteNumber{-1e30, 1e30},
-    kMostWholeNumber{0, 18446744073709551616.0};  // the last is 2^64, one more than the largest whole number
+    kMostWholeNumber{0, 18446744073709551616.0};  // 2^64, one more than the largest integer
 
 enum class ValueType {
   number,
@@ -32,7 +31,7 @@ enum class ValueType {
   flag,              ///< true or false
   choice,            ///< one of KeyInfo::choices
   text,
-  file,  ///< path of a file that reading the scene opens
+  file,  ///< path of a file opened on reading the scene
   list,
   object
 };
@@ -45,7 +44,7 @@ struct KeyInfo {
   ValueType type = ValueType::object;
   std::string_view unit = {};      ///< as documented; empty: none
   Range range = kFiniteNumber;     ///< range of each number
-  std::string default_value = {};  ///< as documented; empty: the key must be given, or has no default
+  std::string default_value = {};  ///< as documented; empty: required, or without a default
   std::string_view meaning = {};   ///< one line of Markdown
   std::span<const std::string_view> choices = {};
   bool may_be_texture = false;  ///< or an object of the section "texture"
@@ -53,9 +52,9 @@ struct KeyInfo {
 
 /// All rows, in the order of scenes/README.md.
 std::span<const KeyInfo> schema();
-/// The row of a key that exists.
+/// Row of an existing key.
 const KeyInfo& key_info(std::string_view section, std::string_view key);
-/// The keys, of whatever section, that name files: whoever may set one can have any file opened.
+/// Keys of all sections naming files: setting one opens a file.
 std::span<const std::string_view> file_keys();
 /// The keys of one section; empty for an unknown section.
 std::span<const std::string_view> section_keys(std::string_view section);
@@ -65,7 +64,7 @@ std::string settings_path(std::string_view key);
 /// The rows as a JSON Schema of scene files (draft-07).
 std::string json_schema();
 
-/// The settings and the film that are in use, keys with a value only: a JSON object.
+/// Settings and film in use as a JSON object, omitting keys without a value.
 std::string settings_json(const Scene& scene);
 
 /// "a, b, c".

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading typed, checked values out of a Document; every failure names the value, its place and what was
-// expected.
+// Reading of typed, checked values from a Document; errors name the value, its position and the expected
+// form.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,7 @@
 
 namespace opaline {
 
-/// A value, its name (the path that `--set` would use for it), and the row of the schema that says what it
-/// may be.
+/// A value, its name (its path for `--set`), and its row of the schema.
 class Value {
  public:
   /// info: the row of the schema for it; document and node outlive it.
@@ -31,7 +30,7 @@ class Value {
   const KeyInfo& info() const { return *info_; }
   /// Path of the value in `--set`.
   const std::string& path() const { return path_; }
-  /// Where it stands in the file.
+  /// Its position in the file.
   SourcePlace place() const { return place_at(*document_, node_->offset, node_->override_index); }
 
   /// A number in the range of its row. Each getter below throws Error{bad_input} at the value.
@@ -40,10 +39,10 @@ class Value {
   double number(const Range& range) const;
   std::uint64_t whole_number() const;
   std::uint64_t whole_number(std::uint64_t low, std::uint64_t high) const;
-  /// true or false.
+  /// A boolean.
   bool flag() const;
   std::string string() const;     ///< not empty
-  std::string file_path() const;  ///< a file's name, relative to the scene file's folder, as it can be opened
+  std::string file_path() const;  ///< a file's name, relative to the scene file's folder, ready for opening
   std::size_t choice() const;     ///< the index of one of the row's choices
 
   Vec3d triple() const { return triple(info_->range); }  ///< [x, y, z]
@@ -55,10 +54,10 @@ class Value {
 
   /// The entries of a list.
   std::vector<Value> list() const;
-  /// The entries of a list of this many; expected: said if it is not.
+  /// Entries of a list of this length; expected: text for the error otherwise.
   std::vector<Value> list(std::size_t size, const std::string& expected) const;
 
-  /// The members of an object whose keys are names that the user chose.
+  /// Members of an object with user-defined names as keys.
   std::vector<Value> members() const;
   /// One member of an object, read by a row of the schema.
   std::optional<Value> member(std::string_view key, const KeyInfo& info) const;
@@ -82,17 +81,17 @@ class Value {
   std::string path_;
 };
 
-/// An object of one section of the schema; unknown keys are rejected when it is made.
+/// An object of one section of the schema; the constructor rejects unknown keys.
 class ObjectReader : public Value {
  public:
-  /// section: of the schema, whose keys it may have. Throws at another key, with the nearest name.
+  /// section: of the schema. Throws at an unknown key, with the nearest name.
   ObjectReader(const Value& value, std::string_view section);
 
   /// The value of a key, or none.
   std::optional<Value> find(std::string_view key) const;
   /// error if the key is missing
   Value need(std::string_view key) const;
-  /// The one of these keys that the object has. error if it has none or several
+  /// The only one of these keys in the object. error if there is none or several
   std::string_view exactly_one_of(std::span<const std::string_view> keys) const;
 
  private:

@@ -9,25 +9,24 @@
 
 namespace opaline {
 
-/// A light of the scene; the channels of one environment are one.
+/// A light of the scene, with the channels of one environment combined.
 struct LightGroup {
   std::string layer;  ///< name of the light, with "_" for characters invalid in compositors
   std::vector<std::size_t> lights;
-  bool is_seen = false;  ///< camera rays may meet it
+  bool is_seen = false;  ///< visible to camera rays
 };
 
 /// The scene's lights, as layers.
-/// error Error{bad_input}: no lights, two of the same layer, or a method whose pictures are noisy: `direct`, `volume`
+/// error Error{bad_input}: no lights, two of the same layer, or a noisy method: `direct`, `volume`
 std::vector<LightGroup> light_groups(const Scene& scene);
 
-/// Appends "diffuse_NAME", "specular_NAME" and, for lights that may be seen, "emission_NAME" to the picture of the
-/// session's scene: what is in it by that light alone, bounced light included. They sum to R, G, B within float
-/// rounding. Light is additive, so each is the picture of the scene in which the others are dark. Trees are
-/// approximate, so each pixel's shares are scaled to sum to what the picture has; the factors are within the
-/// evaluator's tolerance of 1, beside edges of shadows within the noise. Costs what light that changes colour costs, for
-/// each light; one light costs nothing.
-/// in    picture: session.render()'s
-/// error as Session::render and light_groups; the session holds its scene again
+/// Appends "diffuse_NAME", "specular_NAME" and, for visible lights, "emission_NAME" to the session's image:
+/// the contribution of that light alone, bounced light included. They sum to R, G, B within float rounding.
+/// Each is an image with all other lights dark; since trees are approximate, each pixel's contributions are
+/// scaled to the image's sum, by factors within the evaluator's tolerance of 1, or within the noise beside
+/// shadow edges. The cost per light is that of a change of its colour; none for a single light.
+/// in    picture: from session.render()
+/// error as Session::render and light_groups; the session's scene is restored
 void add_light_groups(Session& session, Image& picture, Monitor* monitor = nullptr);
 
 }  // namespace opaline

@@ -9,10 +9,10 @@
 
 namespace opaline {
 
-/// SHA-1 of the scene file's bytes, the overrides, the bytes of each mesh file in use, once, and what textures and
-/// pictures of rooms hold; empty where the scene came through a pipe. Taken while loading: files may change during a
-/// long render.
-/// error Error{bad_input}: a file that cannot be read a second time
+/// SHA-1 of the scene file's bytes, the overrides, the bytes of each mesh file in use, once, and the contents
+/// of textures and environment maps; empty for a scene from a pipe. Computed on loading, as files may change
+/// during a long render.
+/// error Error{bad_input}: a file cannot be read a second time
 std::string scene_hash(const std::string& path, const std::vector<std::string>& overrides,
                        const Scene& scene);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene that is edited and rendered repeatedly, with reuse of all valid stage results.
+// A session: edits and renders a scene repeatedly, and reuses all valid stage results.
 #pragma once
 
 #include <memory>
@@ -50,10 +50,10 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Chooses the profiles of the bodies (choose_models.h) for all later scenes. With methods that have samples, it also
-  /// places the samples of this scene and keeps them: later scenes move these samples along, or place their own on
-  /// different surfaces without discarding them. The frames of a shot are therefore the same in any process,
-  /// whichever frames it renders.
+  /// Chooses the profiles of the bodies (choose_models.h) for all later scenes. For methods with samples,
+  /// also places the samples of this scene: later scenes move them along, or place others on different
+  /// surfaces without discarding these. The frames of a shot are therefore equal in any process, for any
+  /// subset of frames.
   /// error as edit
   void anchor(Scene scene, Monitor* monitor = nullptr);
 
@@ -61,21 +61,21 @@ class Session {
   /// error as make_world; the session then keeps the previous scene
   void edit(Scene scene);
 
-  /// Sets the number of images of the same surfaces in the same light, 1 by default: the evaluator `automatic`
-  /// makes a surface cache if it pays for all of them.
+  /// Sets the number of images of the same surfaces in the same light, 1 by default: the evaluator
+  /// `automatic` makes a surface cache if it pays for all of them.
   void expect_pictures(std::size_t pictures);
 
-  /// Enables the cache of the view: camera hits, their light by source, and gathering rays, reused by later images. An edit
-  /// of colours or media then traces none of them again, and no specular reflection of rough boundaries without textures and
-  /// metals; smooth boundaries are traced again. Costs memory (HeldView). Off by default.
+  /// Enables the cache of the view: camera hits, their light by source, and gathering rays, reused by later
+  /// images. An edit of colours or media then traces none of them again, and no specular reflection of rough
+  /// boundaries without textures and metals; smooth boundaries are traced again. Costs memory (HeldView). Off
+  /// by default.
   void hold_view(bool hold);
 
-  /// If true, each image is bit-identical to that of a new session. Samples are then placed again if a new session
-  /// would place others, instead of moving along or staying denser than required. Default: false.
+  /// If true, each image is bit-identical to that of a new session: samples are placed again, instead of
+  /// moving along or staying denser than required, if a new session would place others. Default: false.
   void match_new_session(bool matches);
 
-  /// If no further edits follow, the session drops the data that only edits reuse. Default: true. No image
-  /// depends on it.
+  /// False: frees the data needed by further edits only. Default: true. No image depends on it.
   void expect_edits(bool edits);
 
   /// Sums of random walks to resume from, and their storage.
@@ -87,8 +87,8 @@ class Session {
   /// Coarse preview of the scene (first_light.h); requires only the rays.
   Image first_light(Monitor* monitor = nullptr);
 
-  /// Computes all missing stages for the method; a second call does nothing. A scene without lights has no stages: it is
-  /// rendered as by Method::lambert.
+  /// Computes all missing stages for the method; a second call does nothing. A scene without lights has no
+  /// stages: it is rendered as by Method::lambert.
   /// error Error{interrupted}: complete stages remain
   void prepare(Monitor* monitor = nullptr);
 
@@ -104,7 +104,7 @@ class Session {
   const RayScene& rays() const;  ///< after prepare
   /// Bodies after prepare; empty for a method or plan without bodies.
   std::span<const Body> bodies() const;
-  /// Bounced places of the last image with bounces, for any view and light; null: none for these shapes.
+  /// Indirect light of the last image with bounces, for any view and light; null: none for these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
   const SessionWork& work() const;  ///< work of the last edit and since
   /// Decisions on reused and recomputed stages, a line each.

@@ -11,16 +11,16 @@
 
 namespace opaline {
 
-/// Stage results in a cache folder. A codec (session/stage_codecs.h) names the stage, bounds the size of its entry, and
-/// checks everything it reads: no entry, whoever wrote it, takes more memory than its result can need or breaks a later
-/// stage.
+/// Stage results in a cache folder. A codec (session/stage_codecs.h) names the stage, bounds the size of its
+/// entry, and checks everything it reads: no entry, even a forged one, uses more memory than its result could
+/// need, or breaks a later stage.
 class StageCache {
  public:
-  /// error Error{run_failed} naming the folder: it does not exist and cannot be created
+  /// error Error{run_failed} naming the folder: missing, and cannot be created
   explicit StageCache(std::string folder, std::uint64_t most_bytes = BlobCache::kDefaultBytes)
       : blobs_(std::move(folder), most_bytes) {}
 
-  /// The cached result; none: no entry, or one that cannot be used.
+  /// The cached result; none: no entry, or an unusable one.
   template <class Codec>
   std::optional<typename Codec::Value> find(const StageKey& key, const Codec& codec) {
     const std::optional<BlobReader> entry = blobs_.find(Codec::kStage, key, codec.most_bytes());
@@ -36,7 +36,7 @@ class StageCache {
     blobs_.keep(Codec::kStage, key, [&](BlobWriter& file) { codec.put(file, value); });
   }
 
-  /// One line that names each unusable entry, and why a result was not written; empty: no failures.
+  /// One line naming each unusable entry, and the reason for a result not written; empty: no failures.
   std::string warning() const { return blobs_.warning(); }
 
  private:

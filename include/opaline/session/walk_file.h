@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sums of random walks in a file.
+// File of random-walk sums.
 #pragma once
 
 #include <map>
@@ -10,14 +10,14 @@
 
 namespace opaline {
 
-/// By the keys of their sources of light (stage_keys.h).
+/// Sums by key of their light source (stage_keys.h).
 using WalkFile = std::map<StageKey, SourceSums>;
 
 /// Writes an EXR of 32-bit sums.
-/// error Error{run_failed} naming the file: not writable, disk full; the old file is left as it was
+/// error Error{run_failed} naming the file: not writable, disk full; the old file remains unchanged
 void write_walks(const std::string& path, const WalkFile& walks);
 
-/// The sums in the file; none where there is no file.
+/// Sums in the file; none without a file.
 /// error Error{bad_input} naming the file: damaged, not such sums
 WalkFile read_walks(const std::string& path);
 

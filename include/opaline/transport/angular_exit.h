@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How light scattered inside leaves by angle.
+// Angular distribution of light scattered inside a body.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace opaline {
 
-/// Outgoing radiance of a half space in uniform light, relative to isotropic light of the same flux behind the boundary: 1
-/// without absorption; otherwise larger near the horizon, where light has shallow paths. By reciprocity it is proportional
-/// to the reflected fraction of light incident at that angle.
+/// Outgoing radiance of a half space in uniform light, relative to isotropic light of the same flux behind
+/// the boundary: 1 without absorption; otherwise larger near the horizon, from shallow paths. By reciprocity
+/// proportional to the reflected fraction of light incident at that angle.
 /// from  HalfSpace; measured against random walks in src/volume/README.md
 class AngularExit {
  public:

@@ -8,7 +8,7 @@
 namespace opaline {
 
 /// Reflectance F seen from outside, for light at cosine `cos_outside` in [0, 1]; eta = inside / outside.
-/// Total reflection (eta < 1 beyond the critical angle) gives exactly 1. Works on float and double.
+/// Total reflection (eta < 1 beyond the critical angle) gives exactly 1. For float and double.
 template <class T>
 T fresnel_reflectance(T cos_outside, T eta) {
   const T sin2_inside = (T(1) - cos_outside * cos_outside) / (eta * eta);
@@ -31,8 +31,8 @@ double average_reflectance_outside(double eta);
 /// F_dr: the same average for light arriving from inside; 1 - F_dr = (1 - F_bar) / eta^2.
 double average_reflectance_inside(double eta);
 
-/// C2: the integral of F mu^2 over the cosine mu in [0, 1] at which light arrives from inside; numerical, error
-/// below 1e-9. That of F mu is F_dr / 2.
+/// C2: integral of F mu^2 over the internal cosine mu in [0, 1]; numerical, error below 1e-9. The integral of
+/// F mu is F_dr / 2.
 double reflectance_moment_inside(double eta);
 
 /// A = (1 + F_dr) / (1 - F_dr) of the dipole's boundary condition; exactly 1 at eta = 1.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exact albedo of a half space scattering evenly behind a smooth boundary.
+// Exact albedo of an isotropically scattering half space behind a smooth boundary.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,15 @@ namespace opaline {
 class HalfSpace {
  public:
   /// in    absorbed = 1 - albedo in [0, 1]; eta, inside over outside, > 0
-  /// from  Chandrasekhar 1960, Radiative Transfer, sec. 38 (the H function and diffuse reflection), with Fresnel's
-  ///       reflection inside by a linear system over its quadrature points; derived in src/diffusion/README.md
+  /// from  Chandrasekhar 1960, Radiative Transfer, sec. 38 (the H function and diffuse reflection), with
+  ///       Fresnel's reflection inside by a linear system over its quadrature points; derived in
+  ///       src/diffusion/README.md
   HalfSpace(double absorbed, double eta);
 
-  /// The fraction of diffuse light coming back of what entered: total diffuse reflectance per transmitted flux.
-  /// out   [0, 1]; relative error below 1e-9 for eta from .1 to 10; exactly 1 where absorbed is 0
+  /// Total diffuse reflectance per transmitted flux, of diffuse light.
+  /// out   [0, 1]; relative error below 1e-9 for eta from 0.1 to 10; exactly 1 if absorbed is 0
   double diffuse_share() const { return diffuse_share_; }
-  /// The same of light with one direction.
+  /// The same for light from one direction.
   /// in    cos_inside: with the inward normal, behind the boundary, [0, 1]
   double share(double cos_inside) const;
 

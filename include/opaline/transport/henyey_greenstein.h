@@ -19,7 +19,7 @@ inline double sample_henyey_greenstein(double g, double u) {
   return std::clamp(numerator / (denominator * denominator), -1.0, 1.0);
 }
 
-/// The unit direction turned by an angle (its cosine) in a plane given by an azimuth (its cosine and sine).
+/// Rotates a unit direction by an angle (its cosine) in a plane given by an azimuth (its cosine and sine).
 inline Vec3d deflected(const Vec3d& direction, double cosine, const std::array<double, 2>& azimuth) {
   Vec3d u, v;
   tangent_frame(direction, u, v);

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The medium of a random walk: one colour channel, one material throughout, behind a smooth boundary.
+// Medium of a random walk: one channel, homogeneous, behind a smooth boundary.
 #pragma once
 
 namespace opaline {
 
-/// Coefficients of one channel. Unlike the scene's media they are not reduced: walks follow g.
+/// Coefficients of one channel, not reduced, unlike the scene's media: walks use g.
 struct HomogeneousMedium {
   double sigma_a = 0;  ///< absorption, 1/mm, finite, >= 0
   double sigma_s = 0;  ///< scattering, 1/mm, finite, >= 0
   double g = 0;        ///< mean cosine of the scattering angle (Henyey-Greenstein), in (-1, 1)
-  double eta = 1;      ///< index of refraction, inside over outside, in [.1, 10]
+  double eta = 1;      ///< index of refraction, inside over outside, in [0.1, 10]
 
   double sigma_t() const { return sigma_a + sigma_s; }
-  /// Fraction of the light that a collision does not absorb; 0 where nothing collides.
+  /// Single-scattering albedo; 0 without collisions.
   double albedo() const { return sigma_t() > 0 ? sigma_s / sigma_t() : 0; }
-  /// 1/sigma_t' = 1/(sigma_a + (1-g) sigma_s), mm; infinite where there is no matter.
+  /// 1/sigma_t' = 1/(sigma_a + (1-g) sigma_s), mm; infinite in vacuum.
   double reduced_mean_free_path() const { return 1 / (sigma_a + (1 - g) * sigma_s); }
 };
 
-/// error Error{bad_input} that names the first member out of its range
+/// error Error{bad_input} naming the first member out of its range
 void check_medium(const HomogeneousMedium& medium);
 
 /// error Error{bad_input}: "`name` ... (expected ..., got value)" unless `is_good`

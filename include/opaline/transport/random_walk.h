@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random walks of light inside a body: free flights, collisions, and what leaves at each flight's end.
+// Random walks of light inside a body: free flights, collisions, and exits.
 //
-// A walk carries a weight, the fraction of light that it stands for. What leaves at the boundary is counted as its
-// expected value, absorption takes its fraction of the weight, and roulette ends walks without bias. The
-// derivation is in src/transport/README.md.
+// A walk carries a weight, its fraction of the light. Exits at the boundary are counted by expected value,
+// absorption reduces the weight, and Russian roulette ends walks without bias. Derived in
+// src/transport/README.md.
 #pragma once
 
 #include <algorithm>
@@ -21,12 +21,12 @@ namespace opaline {
 
 struct WalkState {
   Vec3d position;   ///< mm
-  Vec3d direction;  ///< unit, the way the light travels
+  Vec3d direction;  ///< unit, of propagation
   double weight = 1;
   std::uint64_t collisions = 0;
 };
 
-/// The boundary ahead of a ray.
+/// Next boundary along a ray.
 struct BoundaryAhead {
   double distance = std::numeric_limits<double>::infinity();  ///< mm, >= 0
   Vec3d normal;                                               ///< unit, outward
@@ -34,7 +34,7 @@ struct BoundaryAhead {
 
 /// Interaction of a ray with the medium up to the boundary, and with the boundary.
 struct Crossing {
-  double collided = 0;     ///< share that collides on the way, 1 - exp(-sigma_t distance)
+  double collided = 0;     ///< fraction colliding before the boundary, 1 - exp(-sigma_t distance)
   double reflectance = 0;  ///< reflectance of the boundary, for the rest
 };
 
@@ -44,11 +44,11 @@ inline Crossing cross(const HomogeneousMedium& medium, const WalkState& walk, co
   return {collided, inside_reflectance(dot(walk.direction, ahead.normal), medium.eta)};
 }
 
-/// One flight: what leaves is known, and the walk goes on with the rest.
+/// One flight: the exiting weight, and the continuing walk.
 struct Flight {
   double leaving = 0;    ///< weight crossing the boundary
-  double remaining = 0;  ///< weight that goes on
-  double distance = 0;   ///< to where it goes on: a collision, or the boundary, where it is reflected
+  double remaining = 0;  ///< continuing weight
+  double distance = 0;   ///< to the point of continuation: a collision, or a reflection at the boundary
   bool collides = false;
 };
 
@@ -56,13 +56,13 @@ inline Flight fly(const HomogeneousMedium& medium, double weight, const Boundary
                   const Crossing& crossing, WalkNumbers& numbers) {
   const double leaving = (1 - crossing.collided) * (1 - crossing.reflectance), remaining = 1 - leaving;
   Flight flight{weight * leaving, weight * remaining, ahead.distance, false};
-  const double share = numbers.next() * remaining;  // up to `collided` it is the free path's distribution
+  const double share = numbers.next() * remaining;  // below `collided` it is the free path's distribution
   flight.collides = share < crossing.collided;
   if (flight.collides) flight.distance = std::min(ahead.distance, -std::log1p(-share) / medium.sigma_t());
   return flight;
 }
 
-/// Ends a walk whose weight has fallen to `least`, or lets it go on with twice that: the mean stays.
+/// Russian roulette: ends a walk of weight `least` or below, or continues it with twice that; keeps the mean.
 inline bool survives(double& weight, double least, WalkNumbers& numbers) {
   if (weight > least) return true;
   if (numbers.next() * 2 * least >= weight) return false;
@@ -70,7 +70,7 @@ inline bool survives(double& weight, double least, WalkNumbers& numbers) {
   return true;
 }
 
-/// Half of all walks reaching 1024, 4096, 16384, ... collisions end, the others stand for both.
+/// Ends half of all walks reaching 1024, 4096, 16384, ... collisions; the others get twice the weight.
 inline bool survives_long(double& weight, std::uint64_t collisions, WalkNumbers& numbers) {
   constexpr std::uint64_t kFirst = 1024, kEvenBits = 0x5555555555555555u;
   const bool is_power_of_two = (collisions & (collisions - 1)) == 0;
@@ -79,7 +79,7 @@ inline bool survives_long(double& weight, std::uint64_t collisions, WalkNumbers&
   return numbers.next() < .5;
 }
 
-/// The same where some more collisions come at once; `collisions` becomes their sum.
+/// The same for several collisions at once; `collisions` becomes their sum.
 inline bool survives_long(double& weight, std::uint64_t& collisions, std::uint64_t more,
                           WalkNumbers& numbers) {
   constexpr std::uint64_t kFirst = 1024;
@@ -120,18 +120,17 @@ struct LeavingLight {
   std::uint64_t collisions = 0;  ///< before it left; 0: unscattered
 };
 
-/// Where the weight of a walk went that did not leave.
+/// Weight of a walk that did not exit.
 struct WalkEnd {
   double absorbed = 0;
   double unfinished = 0;  ///< weight inside at the end of an unfinished walk
 };
 
 /// Follows one walk to its end; `walk` then has its last state.
-/// in    body.ahead(position, direction): BoundaryAhead of a ray starting inside
-///       watcher.visit(walk, ahead, crossing): called before every flight
-///       watcher.leave(LeavingLight): called at every exit
-///       most_collisions: a walk with as many is given up
-/// out   mean over walks: weight that left + absorbed + unfinished = weight at the start
+/// in    body.ahead(position, direction): BoundaryAhead of a ray starting inside watcher.visit(walk, ahead,
+///       crossing): called before every flight watcher.leave(LeavingLight): called at every exit
+///       most_collisions: maximum, ending the walk unfinished
+/// out   mean over walks: exited weight + absorbed + unfinished = weight at the start
 template <class Body, class Watcher>
 WalkEnd random_walk(const HomogeneousMedium& medium, const Body& body, std::uint64_t most_collisions,
                     WalkNumbers& numbers, WalkState& walk, Watcher&& watcher) {

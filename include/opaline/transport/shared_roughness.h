@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables of rough boundaries, made once and used by all renders of the program.
+// Tables of rough boundaries, shared by all renders of the program.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// The same tables each time they are asked for: with an anisotropy they take seconds to make.
+/// Returns the same tables on each call: anisotropic ones take seconds to compute.
 /// in    roughness: none: a range for any
 std::shared_ptr<const RoughnessRange> shared_roughness(double eta, float anisotropy,
                                                        std::optional<float> roughness = {});

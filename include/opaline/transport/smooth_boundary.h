@@ -21,20 +21,20 @@ inline double refracted_cosine(double cosine, double ratio) {
   return std::sqrt(std::max(0.0, 1 - ratio * ratio * (1 - cosine * cosine)));
 }
 
-/// The direction that light from outside takes inside.
-/// in    unit direction of travel, unit outward normal, dot(direction, normal) < 0; no total reflection
+/// Refracted direction of light entering.
+/// in    unit direction of propagation, unit outward normal, dot(direction, normal) < 0; no total reflection
 inline Vec3d refracted_inward(const Vec3d& direction, const Vec3d& normal, double eta) {
   const double cosine = -dot(direction, normal);
   return normalized((direction + normal * cosine) / eta - normal * refracted_cosine(cosine, 1 / eta));
 }
 
-/// The direction that light from inside takes outside, dot(direction, normal) > 0.
+/// Refracted direction of light exiting, dot(direction, normal) > 0.
 inline Vec3d refracted_outward(const Vec3d& direction, const Vec3d& normal, double eta) {
   const double cosine = dot(direction, normal);
   return normalized((direction - normal * cosine) * eta + normal * refracted_cosine(cosine, eta));
 }
 
-/// Mirrored at a plane with this normal.
+/// Reflection at a plane with this normal.
 inline Vec3d mirrored(const Vec3d& direction, const Vec3d& normal) {
   return direction - normal * (2 * dot(direction, normal));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The random numbers of one walk.
+// Random numbers of one walk.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// A stream depending on the seed and the walk's index alone: walks may run in any order on any thread.
+/// A stream depending only on the seed and the walk's index: walks may run in any order on any thread.
 class WalkNumbers {
  public:
   WalkNumbers(std::uint64_t seed, std::uint64_t walk) : key_(hash_bits(seed, walk)) {}
@@ -17,7 +17,7 @@ class WalkNumbers {
   /// Uniform in [0, 1).
   double next() { return unit_double(hash_bits(key_, count_++)); }
 
-  /// Two, uniform in [-1, 1), 32 bits each.
+  /// Two numbers, uniform in [-1, 1), 32 bits each.
   std::array<double, 2> next_pair() {
     const std::uint64_t bits = hash_bits(key_, count_++);
     return {double(std::int32_t(bits >> 32)) * 0x1p-31, double(std::int32_t(bits)) * 0x1p-31};

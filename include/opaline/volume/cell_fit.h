@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A smooth field over a surface from its means over cells.
+// Smooth field over a surface, from its means over cells.
 #pragma once
 
 #include <array>
@@ -12,35 +12,35 @@
 
 namespace opaline {
 
-/// Weights of neighbouring means in each cell's quadratic. They depend on cell positions only, so fits to other means of
-/// the same cells share them; 700 bytes per cell.
+/// Weights of neighbouring means in each cell's quadratic. They depend on cell positions only, so fits of
+/// other means on the same cells share them; 700 bytes per cell.
 class CellWeights {
  public:
   explicit CellWeights(std::span<const SurfaceSample> samples);
 
  private:
   friend class CellFit;
-  /// Where the cells lie.
+  /// Positions of the cells.
   struct Places {
     explicit Places(std::span<const SurfaceSample> samples);
     NearestSample middles;
-    std::vector<std::uint32_t> of_sample;  ///< its place among middles.members()
+    std::vector<std::uint32_t> of_sample;  ///< index into middles.members()
     float spacing = 1;                     ///< root of the cells' mean area, mm
   };
   struct Frame {
     Vec3f along_u, along_v;
-    float moment;  ///< mean of u^2 and of v^2 over the cell, spacings
+    float moment;  ///< mean of u^2 and of v^2 over the cell, spacings^2
   };
   struct Neighbour {
     std::uint32_t sample;
-    float closeness;  ///< weight with which its surprise counts here
+    float closeness;  ///< weight of its squared residual
   };
   /// Weights of kChunk cells, in spatial order.
   struct Chunk {
-    std::vector<Frame> frames;                ///< one a cell
+    std::vector<Frame> frames;                ///< one per cell
     std::vector<std::uint32_t> ends;          ///< end of each cell's neighbours
-    std::vector<Neighbour> neighbours;        ///< those of a cell after those of the one before
-    std::vector<std::array<float, 6>> terms;  ///< one a neighbour: of the quadratic, for a mean of 1 there
+    std::vector<Neighbour> neighbours;        ///< cell by cell
+    std::vector<std::array<float, 6>> terms;  ///< one per neighbour: its quadratic for a mean of 1
   };
   static Chunk chunk_of(const Places& places, std::span<const SurfaceSample> samples, std::size_t begin,
                         std::size_t end);
@@ -49,49 +49,49 @@ class CellWeights {
   std::vector<Chunk> chunks_;
 };
 
-/// Around each cell a quadratic of the place in its tangent plane is fitted to the means of the cells near it; at a
-/// point the fits of the cells around are blended. A quadratic field on a plane comes out exactly. All is linear
-/// in the means: noise in them becomes noise, not bias.
+/// Weighted least-squares fit: each cell has a quadratic over its tangent plane, fitted to the means of
+/// nearby cells; a point blends the quadratics of the cells around it. Exact for quadratic fields on a plane.
+/// Linear in the means, so their noise causes noise, not bias.
 class CellFit {
  public:
-  /// in    means, errors: of the samples' cells, one each; errors: standard, independent of each other
+  /// in    means, errors: one per sample's cell; errors: standard, mutually independent
   CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> means, std::span<const RgbF> errors);
-  /// The same, bit for bit, by weights of these samples.
+  /// The same bits, from weights of the same samples.
   CellFit(const CellWeights& weights, std::span<const RgbF> means, std::span<const RgbF> errors);
 
   struct Value {
     RgbF value;  ///< >= 0
-    RgbF noise;  ///< standard error that the means' errors give it
-    RgbF shape;  ///< estimated standard error that the fit gives it, where it does not follow the field
+    RgbF noise;  ///< standard error from the means' errors
+    RgbF shape;  ///< estimated standard error from fitting a quadratic to the field
   };
-  /// Reads the field at one point after another, fastest where it was told which follow.
+  /// Evaluates the field point by point; faster with expect().
   class Reader {
     typedef float Four __attribute__((vector_size(16)));
     struct FourCells {
       std::array<Four, 3> middle, normal;
     };
     struct FourWeights {
-      std::array<Four, 3> apart;  // offset of the point from their centres, in spacings
+      std::array<Four, 3> apart;  // offset of the point from the cells' centres, spacings
       Four weight;
     };
 
    public:
     /// It must outlive the reader.
     explicit Reader(const CellFit& fit);
-    /// Says which points are asked for next; they change how long it takes, not what comes out.
+    /// Announces the next points, to speed up `at`; results do not depend on it.
     void expect(std::span<const Vec3f> positions);
-    /// At a point of the surface, by its position and shading normal.
+    /// Value at a point of the surface, by its position and shading normal.
     Value at(const Vec3f& position, const Vec3f& normal);
 
    private:
     void take_around(const Vec3f& position, float beyond);
 
     const CellFit& fit_;
-    Vec3f taken_;                      // the place whose cells are taken, and of points so far off:
-    float beyond_ = 0;                 // spacings
-    std::vector<std::uint32_t> near_;  // these cells, by their places
+    Vec3f taken_;                      // centre of the ball with cached cells
+    float beyond_ = 0;                 // its radius, spacings
+    std::vector<std::uint32_t> near_;  // indices of the cached cells
     std::vector<FourCells> fours_;     // the same cells, four to a vector
-    // Scratch of `at`: what it finds of these cells for its point, and which of them it blends.
+    // Scratch of `at`: weights of the cells at its point, and indices of the nonzero ones.
     std::vector<FourWeights> weighed_;
     std::vector<std::uint32_t> blended_;
   };
@@ -113,7 +113,7 @@ class CellFit {
   static RgbF rgb_of(const Channels& channels) { return {channels[0], channels[1], channels[2]}; }
 
   std::shared_ptr<const CellWeights::Places> places_;
-  std::vector<Fit> fits_;  ///< one a cell, in the order of their places
+  std::vector<Fit> fits_;  ///< one per cell, in spatial order
 };
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The samples of cut_surface, on the surface of the solid that closed meshes enclose.
+// Samples of cut_surface, on the surface of the solid enclosed by closed meshes.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace opaline {
 
-/// Pieces of the meshes that do not bound the solid, where the winding number is not 0, are left out: parts overlapping,
-/// folds, shells inside. Meshes without such pieces have the samples of cut_surface, bit for bit.
+/// cut_surface without pieces of the meshes inside the solid, the region of nonzero winding number: overlaps,
+/// folds, inner shells. Equals cut_surface, bit for bit, without such pieces.
 /// in    rays: of the world
 CutSurface cut_outer_surface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
                              double cell, int parts);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples of a surface, one in each cell that it crosses.
+// Samples of a surface, one per lattice cell.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace opaline {
 
-/// A body's surface cut by a lattice: each cell has a sample for each sheet in it, and for each direction that its
-/// normals have. A sample's area and centroid are those of what is in its cell, its place is on the triangle next to that.
+/// Samples of a body's surface cut by a lattice: one per cell, sheet and direction of normals. Area and
+/// centroid are those of the surface in the cell; the position is on the triangle nearest to the centroid.
 struct CutSurface {
   SurfaceSamples surface;
-  std::vector<Vec3f> normals;  ///< geometric, mean over the sample's part, outward; one a sample
+  std::vector<Vec3f> normals;  ///< geometric, outward, mean over the sample's surface; one per sample
 };
 
 /// in    cell: edge of the cells of VolumeDiffusion, world units
 ///       parts: of a cell's edge, >= 1; each of their cubes is a cell of the lattice
 CutSurface cut_surface(const World& world, std::span<const std::uint32_t> meshes, double cell, int parts);
 
-/// Samples for an area of so many cells' faces, at the most: measured 1.5 on spheres, 1.67 on a bunny.
+/// Upper bound of the samples per area of a cell's face; src/volume/README.md.
 inline constexpr double kCutSamplesPerFace = 1.7;
 
 }  // namespace opaline

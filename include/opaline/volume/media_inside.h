@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A medium that differs from place to place inside a body.
+// Heterogeneous medium inside a body.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace opaline {
 
-/// Media of R G B in a cube of edge `width` around a point inside a body; all have one g and one eta. Thread-safe. World
-/// space and its unit of length.
+/// Media of R G B in a cube of edge `width` around a point inside a body; all have one g and one eta.
+/// Thread-safe. World space and its unit of length.
 using MediaInside = std::function<std::array<HomogeneousMedium, 3>(const Vec3d& position, double width)>;
 
 }  // namespace opaline

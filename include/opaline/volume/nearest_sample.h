@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The samples around a point of a surface.
+// Nearest samples on a surface.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace opaline {
 
-/// Finds the samples of a point's sheet: those whose normals do not face away from the point's (same_sheet).
+/// Finds the samples on a point's sheet: those with normals not facing away from the point's (same_sheet).
 class NearestSample {
  public:
   struct Member {
@@ -18,20 +18,21 @@ class NearestSample {
     std::uint32_t sample;
   };
 
-  /// world: where the samples lie. With it sheets are told by the triangles' normals, as by the areas of the
-  /// samples, and the nearest sample's cell holds the point. Without it the samples' own normals are taken.
-  /// cube_edge: of the cubes that for_near visits, in mean spacings of the samples; radii of its size are the fastest
+  /// world: of the samples. With a world, triangles' normals identify sheets, as for the samples' areas, and
+  /// the nearest sample's cell contains the point. Without, the samples' own normals identify them.
+  /// cube_edge: of the cubes visited by for_near, in mean spacings of the samples; radii of its size are the
+  /// fastest
   explicit NearestSample(std::span<const SurfaceSample> samples, const World* world = nullptr,
                          float cube_edge = 1);
 
-  /// Index of the nearest sample of the sheet; of any sheet where none of the point's is near.
+  /// Index of the nearest sample on the point's sheet; on any sheet if there is none nearby.
   std::uint32_t at(const Vec3f& position, const Vec3f& normal) const;
 
-  /// Cube by cube.
+  /// All samples, cube by cube.
   std::span<const Member> members() const { return members_; }
 
-  /// Calls visit(member), an element of members(), for all samples, of any sheet, in the cubes that the ball around a
-  /// position meets.
+  /// Calls visit(member), an element of members(), for all samples, on any sheet, in the cubes intersecting
+  /// the ball around a position.
   template <class Visit>
   void for_near(const Vec3f& position, float radius, const Visit& visit) const {
     const Place low = place_of(position - Vec3f(radius)), high = place_of(position + Vec3f(radius));
@@ -47,7 +48,7 @@ class NearestSample {
   };
   struct Cube {
     std::uint64_t key = 0;
-    std::uint32_t first = 0, count = 0;  ///< range of its members; none: the slot is free
+    std::uint32_t first = 0, count = 0;  ///< range of its members; empty: the slot is free
   };
   struct Found {
     float distance2;

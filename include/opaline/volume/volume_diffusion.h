@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exitance of a body by the diffusion equation solved inside it: fast, and independent of a kernel's assumptions.
+// Exitance of a body from the diffusion equation inside it: fast, and independent of a kernel's assumptions.
 #pragma once
 
 #include <array>
@@ -19,40 +19,44 @@ namespace opaline {
 
 struct VolumeDiffusionInput {
   const World& world;
-  std::span<const std::uint32_t> meshes;   ///< the body's
+  std::span<const std::uint32_t> meshes;   ///< meshes of the body
   std::span<const SurfaceSample> samples;  ///< samples of its cut_surface with these cells
   std::span<const Vec3f> normals;          ///< normals of the same cut_surface
   std::array<HomogeneousMedium, 3> media;  ///< R G B, isotropic, in the world's unit of length
   double cell = 1;                         ///< edge of the cells at the surface, world units
-  MediaInside media_inside = {};           ///< isotropic; instead of `media`. Empty: these throughout
+  MediaInside media_inside = {};           ///< isotropic; replaces `media`. Empty: homogeneous
 };
 
-/// Diffuse mean free paths that count as one mean free path, where they are less. Measured, src/volume/README.md.
+/// Minimum length to resolve, over the diffuse mean free path; src/volume/README.md.
 inline constexpr double kPerFading = .45;
-/// Length that cells resolve: the mean free path, or the decay length if that is shorter.
+/// Length resolved by cells: the mean free path, or kPerFading times the diffuse mean free path if that is
+/// shorter.
 /// in    mean_free_path: 1/sigma_t', of any unit; absorbed: 1 - albedo'
 double length_to_resolve(double mean_free_path, double absorbed);
-/// Maximum edge of a cell over that length; shorter mean free paths are replaced by this one, with the same albedo.
+/// Widest cell over the length to resolve. Shorter mean free paths are lengthened to match, with the same
+/// albedo.
 inline constexpr double kWidestCell = 3;
 
-/// About how many cells a body has.
-/// in    area, thickness (twice the volume over the area; 0: not known), cell: edge at the surface; of one unit of length
+/// Approximate number of cells of a body.
+/// in    area, thickness (twice the volume over the area; 0: unknown), cell: edge at the surface; in one unit
+///       of length
 double expected_cells(double area, double thickness, double cell);
-/// Measured, of each: with both grids and the solver's vectors.
+/// Bytes per cell, both grids and the solver's vectors included; bench_plan.
 inline constexpr double kBytesOfCell = 275;
 
-/// Light collides for the first time along the refracted rays and spreads by diffusion from there, on cells that
-/// grow inwards. Linear in the lights; the cells do not depend on them. Theory and measurements: src/volume/README.md.
+/// Diffusion from the first collisions along the refracted rays, on cells growing inwards. Linear in the
+/// lights; the cells do not depend on them. Theory and measurements: src/volume/README.md.
 class VolumeDiffusion {
  public:
   explicit VolumeDiffusion(const VolumeDiffusionInput& input);
   VolumeDiffusion(VolumeDiffusion&&) noexcept;
   ~VolumeDiffusion();
 
-  /// in    lights: recentred; transfers: one a light, what enters at the samples; tints: factors on it, one a sample,
-  ///       or empty
-  /// out   exitance and error, one a sample, as of random walks. The error is the difference from cells of twice the
-  ///       size, not that of diffusion itself. walks, relative_error, lost: 0. The same bits for any number of threads
+  /// in    lights: recentred; transfers: one per light, to the samples; tints: factors on the transmitted
+  ///       light, one per sample, or empty
+  /// out   exitance and error, one per sample. The error is the discretization error, from cells of twice the
+  ///       size, without that of diffusion itself. walks, relative_error, lost: 0. The same bits for any
+  ///       number of threads
   /// error Error{interrupted}
   VolumeExitance exitance(std::span<const Light> lights, std::span<const LightTransfer> transfers,
                           std::span<const RgbF> tints = {}, Monitor* monitor = nullptr) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory of random walks in a body, beside the sums of its samples.
+// Memory of random walks in a body, besides the sums of its samples.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace opaline {
 
-/// in    mean_free_path: 1/sigma_t of what is walked, the least of the channels, world units
-/// out   bytes, at the most
+/// Upper bound, bytes.
+/// in    mean_free_path: smallest 1/sigma_t of the walks' channels, world units
 double expected_walk_bytes(const World& world, std::span<const std::uint32_t> meshes, double mean_free_path);
 
 }  // namespace opaline

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which sources may stand for their samples, for a vector of LANES: included as lane_kernels.inl is, but
-// compiled without fused multiply-add: every instruction set decides alike.
+// Acceptance of sources as points or expansions, for a vector of LANES: included like lane_kernels.inl, but
+// compiled without fused multiply-add, so every instruction set decides alike.
 
 TARGET static inline V splat(float f) {
   return V{} + f;

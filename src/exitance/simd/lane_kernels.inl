@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loops of lane_kernels.h on vectors of LANES floats: included once for each instruction set, after its
-// lanes_*.inl, which defines LANES, TARGET (a function attribute), the vectors V (float) and I (32-bit
-// integers), lookup, lookup_32 and lookup_16 (of the first 32 and 16 segments), any, bits and total. No
-// function here may be one of another file: the linker would keep one of them for all machines.
+// The loops of lane_kernels.h on vectors of LANES floats: included once per instruction set, after its
+// lanes_*.inl with LANES, TARGET (a function attribute), the vectors V (float) and I (32-bit integers),
+// lookup, lookup_32 and lookup_16 (of the first 32 and 16 segments), any, bits and total. Uses no function
+// from another file: the linker would keep one copy for all machines.
 
 #include "exitance/simd/lane_series.inl"
 
@@ -71,7 +71,7 @@ struct ChannelSeries {
                      (d.y * (cyy * d.y + 2 * (cyz * d.z)) + d.z * (czz * d.z));
     const V change = f.first * trace + f.second * (2 * moment), x = relative_change(f.value, change);
     const V flux = load(sources.flux[c] + block);
-    // The second moment also changes the derivatives: of a power law 1/r^3 by 5/3 and 5/2 as much.
+    // The second moment also changes the derivatives: for a power law 1/r^3 by 5/3 and 5/2 as much.
     const V first = flux * f.first * (1 + 1.5f * x), second = flux * f.second * (1 + 2 * x);
     sums[0] += flux * with_fourth_order(f.value, change);
     sums[1] += first;
@@ -125,7 +125,7 @@ struct NearSums {
   V area{}, flux0{}, flux1{}, flux2{}, squares{};
 };
 
-// Notes a sample within h of some lanes; returns the lanes for which it is on another sheet.
+// Adds a sample within h in some lanes; returns the lanes with it on another sheet.
 TARGET static inline std::uint32_t add_near(float near2, float inverse_near2, const TreeSample& s,
                                             const Vec3f& normal, const Packet& packet, int block, V s2,
                                             NearSums& near) {
@@ -159,7 +159,7 @@ TARGET static std::size_t add_leaves_block(const LaneInput& input, const std::ui
       const V s2 = square(d);
       const V q = 1 + s2 * unit;
       const Place at = find(q);
-      const bool beyond = any_less(splat(256 - 0x1p-16f), q);  // at 256 segment 16 begins
+      const bool beyond = any_less(splat(256 - 0x1p-16f), q);  // segment 16 begins at 256
       const Kernels kernel_of =
           beyond ? kernels<Reach::all>(input.table, at) : kernels<Reach::near>(input.table, at);
       const V c0 = s.flux[0] * kernel_of.c0, c1 = s.flux[1] * kernel_of.c1, c2 = s.flux[2] * kernel_of.c2;

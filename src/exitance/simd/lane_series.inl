@@ -23,7 +23,7 @@ TARGET static inline V smaller(V a, V b) {
   return a < b ? a : b;
 }
 
-// Where q falls in the table.
+// Position of q in the table.
 struct Place {
   I segment;
   V t;              // relative position along it
@@ -42,7 +42,7 @@ TARGET static inline Place find(V q) {
 using Channel = std::array<std::array<float, LaneTable::kSegments>, 4>;
 using Curvature = std::array<std::array<float, LaneTable::kSegments>, 3>;
 
-// How far into the table places go: to 4 h, to 64 h, anywhere.
+// Range of the table in use: to 4 h, to 64 h, unlimited.
 enum class Reach { near, middle, all };
 
 template <Reach reach>
@@ -102,15 +102,14 @@ TARGET static inline V relative_change(V value, V change) {
   return smaller(larger(change / larger(value, splat(1e-37f)), splat(-0.5f)), splat(0.35f));
 }
 
-// The fourth order of a series in the offsets of samples, by the second: for a power law 1/r^3 and a flat
-// patch it is .9 of the square of the second, for exponentials a third.
+// Estimates the fourth order of a series in the samples' offsets from the second: 0.9 of its square for a
+// power law 1/r^3 and a flat patch, a third for exponentials.
 TARGET static inline V with_fourth_order(V value, V change) {
   return value + change * (1 + 0.8f * relative_change(value, change));
 }
 
-// The kernel's sum over a node of second moment C around its centroid at d: F(s) + F' tr C + 2 F'' d'Cd, s =
-// d'd. Kept within a quarter and four times of F: close by, and far down an exponential, the series means
-// nothing.
+// Sum of the kernel over a node with second moment C around its centroid at d: F(s) + F' tr C + 2 F'' d'Cd, s
+// = d'd. Limited to a quarter and four times F: nearby, and far down an exponential, the series diverges.
 TARGET static inline V node_kernel(const LaneTable& table, std::size_t channel, const Place& at, V first,
                                    V second) {
   const Series f = series(table, channel, at);

@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-// The quadratic in t through the second differences of f at the Chebyshev points start + width t.
+// Quadratic in t through the second differences of f at the Chebyshev points start + width t.
 template <class Function>
 std::array<double, 3> curvature_of(const Function& f, double start, double width) {
   std::array<double, 3> t{}, y{};

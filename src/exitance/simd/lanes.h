@@ -3,7 +3,7 @@
 
 namespace opaline {
 
-/// Points or nodes that are dealt with at once, whatever the width of the machine's registers.
+/// Number of points or nodes processed together, for any register width.
 inline constexpr int kLanes = 16;
 
 }  // namespace opaline

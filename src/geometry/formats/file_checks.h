@@ -14,10 +14,10 @@
 
 namespace opaline {
 
-/// Coordinates must stay below this: Embree drops triangles beyond 1.8e18 without a word.
+/// Limit of coordinates: Embree silently drops triangles beyond 1.8e18.
 inline constexpr double coordinate_limit = 1e18;
 
-/// Counts the vertices whose coordinates are not finite or too large, so one error names them all.
+/// Counts vertices with non-finite or too large coordinates, for a single error.
 class VertexCheck {
  public:
   /// line: 1-based, 0 in binary files
@@ -30,7 +30,7 @@ class VertexCheck {
   Vec3d first_;
 };
 
-/// A file's normal, or zero, which means none, if it is not finite or too large.
+/// A file's normal; zero, none, if it is not finite or too large.
 Vec3f usable_normal(const Vec3d& normal);
 
 /// Cuts a polygon, given corner by corner, into the triangles between its first corner and its other edges.
@@ -59,18 +59,18 @@ class PolygonFan {
   std::size_t corners_ = 0;
 };
 
-/// Cuts concave polygons, see cut_concave_polygons, and polygons that are given twice alike; the mesh gets the new triangles, and a warning of those crossing
-/// themselves. The result is for what else the file gives to corners.
+/// Triangulates concave and duplicate polygons, and warns of self-intersecting ones. The result also applies
+/// to other per-corner data of the file.
 std::vector<Recut> cut_polygons(const std::string& path, SourceMesh& mesh, const std::vector<Fan>& fans);
 
-/// To the corners of all triangles from their vertices; uvs: empty, or one a vertex.
+/// Copies per-vertex UVs to the corners of all triangles; uvs: empty, or one per vertex.
 void give_uvs(SourceMesh& mesh, const std::vector<std::array<float, 2>>& uvs);
 
 /// Bad input at a line of a file.
 Error bad_line(const std::string& path, int line, std::string message, std::string expected = {},
                std::string got = {});
 
-/// error "the mesh has no faces" or "no vertices" where that is so
+/// error "the mesh has no faces" or "no vertices", if so
 void require_faces(const std::string& path, std::size_t vertices, std::size_t faces);
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mesh formats. Each has a file of its own in this folder, which holds all that is particular to it but its name.
+// Mesh formats. Each has one file in this folder, with everything specific to it but its name.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@
 namespace opaline {
 
 struct MeshFormat {
-  /// The mesh in a file's bytes, which the reader may overwrite or free; see read_mesh.
-  /// error Error{bad_input} naming the file, and the line where the format has lines
+  /// Reads the mesh from a file's bytes, which may be overwritten or freed; see read_mesh.
+  /// error Error{bad_input} naming the file, and the line in formats with lines
   SourceMesh (*read)(const std::string& path, std::string& bytes, MeshUvs uvs);
 
   /// A part of the mesh, see MeshFile::part. Null: files of the format have no parts.
   SourceMesh (*read_part)(const std::string& path, const std::string& part, std::string& bytes,
                           MeshUvs uvs) = nullptr;
 
-  /// Contents of a mesh file that refers to other files. Null: its bytes.
+  /// Contents of a mesh file with references to other files. Null: its bytes.
   std::string (*contents)(const std::string& path) = nullptr;
 
   /// The length of the whole file as its header announces it; 0 if it does not. Null: the format never does.
@@ -41,7 +41,7 @@ static_assert(kFormats.size() == kMeshFormats.size());
 /// Extension of a format: lower case, with the dot.
 std::string extension_of(std::string_view format);
 
-/// The format that a file's name ends in, in upper or lower case; null if it is none of them.
+/// Format by the file name's extension, in upper or lower case; null: unknown.
 const MeshFormat* find_mesh_format(const std::string& path);
 
 }  // namespace opaline

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wavefront OBJ: v (with colours), vn, vt, s and f are read, and usemtl where the faces of one material are a part of
-// the file; other statements are counted and reported.
+// Wavefront OBJ: reads v (with colours), vn, vt, s and f, and usemtl if the faces of one material are a part
+// of the file; counts and reports other statements.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -20,17 +20,18 @@ namespace {
 constexpr std::array<std::string_view, 11> silent{"vt",  "vp",     "g",        "o",        "usemtl", "mg",
                                                   "lod", "mtllib", "c_interp", "d_interp", "vc"};
 
-constexpr std::int64_t kNone = -1;  // the index of a normal or UV that a corner has not
+constexpr std::int64_t kNone = -1;  // index of a corner's missing normal or UV
 constexpr std::int64_t kMissing = std::numeric_limits<std::int64_t>::max();  // index of a missing normal
 
-/// Faces give normals to their corners: a vertex met with several gets a copy for each, behind all vertices.
+/// OBJ gives normals to corners of faces: a vertex with several normals gets a copy for each, after all
+/// vertices.
 class VertexVariants {
  public:
   explicit VertexVariants(SourceMesh& mesh) : mesh_(mesh), next_(mesh.positions.size(), kUnmet) {
     mesh.normals.resize(mesh.positions.size());
   }
 
-  /// The copy of the vertex that has this normal.
+  /// The vertex's copy with this normal.
   std::uint32_t of(std::uint32_t vertex, const Vec3f& normal) {
     if (next_[vertex] == kUnmet) {
       next_[vertex] = kLast;
@@ -56,7 +57,7 @@ class VertexVariants {
 
 class ObjReader {
  public:
-  /// part: the material whose faces are read; null: all faces
+  /// part: reads the faces of this material; null: all faces
   ObjReader(const std::string& path, const std::string* part, std::string& bytes, MeshUvs uvs)
       : path_(path), part_(part), bytes_(bytes), with_uvs_(uvs != MeshUvs::unread) {}
 
@@ -138,7 +139,7 @@ class ObjReader {
     mesh_.positions.push_back(position);
   }
 
-  /// Three numbers behind a position, or four of which the last is opacity; fewer are a weight.
+  /// Three numbers after a position, or four with opacity last; fewer are a weight.
   void color(TextCursor& at) {
     Vec3d value;
     for (std::size_t i = 0; i < 3; ++i)
@@ -230,7 +231,7 @@ class ObjReader {
     corner_normals_.push_back({a.normal, b.normal, c.normal});
   }
 
-  /// Corners at a vertex met before are left out, but not those of a face with a hole.
+  /// Skips corners at a repeated vertex, except in a face with a hole.
   void keep_first_of_equal_corners() {
     constexpr std::size_t kFew = 16;  // to compare each with each
     kept_.clear();
@@ -245,7 +246,7 @@ class ObjReader {
     if (!has_hole) corners_.swap(kept_);
   }
 
-  /// True if the face meets an edge both ways: there it leads to a hole and back.
+  /// True if the face contains an edge in both directions, a bridge to a hole.
   bool has_bridge() const {
     std::vector<std::array<std::int64_t, 2>> edges;
     for (std::size_t i = 0; i < corners_.size(); ++i)

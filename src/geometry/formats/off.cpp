@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Object File Format, text: [ST][C][N]OFF. Texture coordinates and what else follows a vertex, or a face and its
-// colour, on its line are passed over.
+// Object File Format, text: [ST][C][N]OFF. Ignores texture coordinates, and anything after a vertex or a
+// face's colour on the same line.
 #include <algorithm>
 #include <optional>
 

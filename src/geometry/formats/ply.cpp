@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PLY, text and binary. Of the vertices x, y, z, nx, ny, nz, UVs and colours are read, of the faces their vertices,
-// UVs at their corners and colours; all other properties, and other elements before the faces, are passed over.
+// PLY, text and binary. Reads x, y, z, nx, ny, nz, UVs and colours of vertices, and vertices, corner UVs and
+// colours of faces; ignores all other properties, and other elements before the faces.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -119,7 +119,7 @@ class PlyValues {
   TextCursor text_;     // in a text file
 };
 
-// Programs call UVs by three pairs of names; behind the first one u is at even places.
+// UVs have three pairs of names in use; in the list below, u is at even indices.
 constexpr std::array<std::string_view, 12> kept_names{"x", "y", "z", "nx", "ny",        "nz",
                                                       "u", "v", "s", "t",  "texture_u", "texture_v"};
 constexpr std::size_t kFirstUv = 6;
@@ -130,7 +130,7 @@ double largest_of(PlyScalar type) {
   return std::ldexp(1.0, 8 * int(byte_size(type)) - is_signed) - 1;
 }
 
-/// Bytes are the usual scale, whatever type holds them.
+/// Bytes are the usual scale, for any type.
 constexpr double kOfBytes = 255;
 
 /// The red, green and blue of an element.
@@ -147,7 +147,7 @@ class PlyColors {
     if (channels_[0] != nullptr && !is_floating(channels_[0]->type)) colors_ = FileColors(ColorCoding::srgb);
   }
 
-  /// Takes a value that is one of them.
+  /// Takes a value of one of the three channels; false for others.
   bool take(const PlyProperty& p, PlyValues& values) {
     const auto channel = std::ranges::find(channels_, &p);
     if (channel == channels_.end()) return false;

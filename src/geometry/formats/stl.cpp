@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// STL, text and binary: triangles, each with corners of its own. Coordinates are taken as float; corners at
-// the same position become one vertex, shaded round but across creases: the format has no vertices of its own, and is
-// written by programs of parts with edges.
+// STL, text and binary: triangles without shared vertices. Reads coordinates as float; corners at the same
+// position become one vertex, with smooth normals except across creases, as the format's parts often have
+// sharp edges.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -86,7 +86,7 @@ std::vector<Vec3f> read_binary(const std::string& path, const std::string& bytes
   return corners;
 }
 
-/// Other statements than the loops around the corners; what follows them on their line is not read.
+/// Keywords besides the loops around the corners; the rest of their line is ignored.
 constexpr std::array<std::string_view, 5> line_keywords{"solid", "endsolid", "facet", "endloop", "endfacet"};
 
 class TextStlReader {
@@ -144,7 +144,7 @@ SourceMesh read_stl(const std::string& path, std::string& bytes, MeshUvs) {
   const bool binary = exact || !text;
   const std::vector<Vec3f> corners = binary ? read_binary(path, bytes) : TextStlReader(path, bytes).run();
   const std::size_t surplus = binary ? bytes.size() - binary_size(bytes) : 0;
-  std::string().swap(bytes);  // the tables of join_corners take its memory
+  std::string().swap(bytes);  // frees memory for join_corners
   SourceMesh mesh = join_corners(corners);
   mesh.smoothing.crease_angle = kCreaseAngle;
   if (surplus > 0)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words, numbers and line numbers of a text held in memory; what the readers of text mesh files share.
+// Words, numbers and line numbers of a text in memory, shared by the readers of text mesh files.
 #pragma once
 
 #include <charconv>
@@ -12,7 +12,7 @@
 
 namespace opaline {
 
-/// Walks over the words of a text, a line at a time or across lines.
+/// Reads the words of a text, within a line or across lines.
 class TextCursor {
  public:
   explicit TextCursor(std::string_view text, std::size_t offset = 0, int line = 1)
@@ -54,7 +54,7 @@ class TextCursor {
     ++line_;
   }
 
-  /// Where this line's newline is, or the end of the text.
+  /// Position of this line's newline, or of the end of the text.
   std::size_t line_end() const {
     const std::size_t end = text_.find('\n', offset_);
     return end == std::string_view::npos ? text_.size() : end;
@@ -68,8 +68,8 @@ class TextCursor {
   int line_;
 };
 
-/// True if the whole word is a number, as streams read them; beyond double it becomes infinite or zero. What is not
-/// finite may also be written as old Microsoft libraries do: -1.#IND00.
+/// True if the whole word is a number, in the syntax of streams; values beyond double become infinite or
+/// zero. Accepts the non-finite values of old Microsoft libraries: -1.#IND00.
 inline bool parse_number(std::string_view word, double& value) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-/// Between 0 and 1; 0 where it is not a number.
+/// Clamped to [0, 1]; 0 for NaN.
 float usable(float value) {
   return value > 0 ? std::min(value, 1.0f) : 0.0f;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours of vertices and faces, as mesh files have them.
+// Colours of vertices and faces in mesh files.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace opaline {
 /// Encoding of numbers from 0 to 1.
 enum class ColorCoding { srgb, linear };
 
-/// Colours of vertices or faces on their way from a file to a mesh. Those that the file leaves out are white.
+/// Collects a file's colours of vertices or faces. Missing ones are white.
 class FileColors {
  public:
   explicit FileColors(ColorCoding coding) : coding_(coding) {}
@@ -28,7 +28,8 @@ class FileColors {
     for (RgbF& color : colors_)
       if (color != kNone) color = color / one;
   }
-  /// Linear, from 0 to 1, one an element. Whole numbers of which one exceeds 1 count to 255 and are sRGB.
+  /// Linear, in [0, 1], one per element. Integer colours with a value above 1 have a maximum of 255 and are
+  /// sRGB.
   std::vector<RgbF> linear(std::size_t elements) const;
 
  private:

@@ -62,7 +62,8 @@ class DirectRenderer {
     ++state.passes;
   }
 
-  // All layers; those but the diffuse one from rays of their own, which ask entries for what they see in mirrors alone.
+  // All layers. Those other than the diffuse one need extra rays, which sample entry points only in specular
+  // reflections.
   RenderResult picture(const DirectState& state) const {
     RenderResult result;
     const MethodLayers layers = method_of(Method::direct).layers();
@@ -71,7 +72,7 @@ class DirectRenderer {
     const Pass mirrored = pass_of(state);
     for_each_tile(Pass{.in_mirrors = &mirrored}, [&](std::size_t pixel, PixelSample sum) {
       if (sum.empty()) return;
-      // As if each of the samples had sent out the mean; where the irradiance of other pictures is, the
+      // Variance of the sum, as if each sample had its mean irradiance; images of the irradiance contain the
       // variance.
       const auto samples = float(scene_.film.samples_per_pixel);
       const DirectEstimate passes = direct_estimate(state, pixel);
@@ -167,12 +168,12 @@ DirectResult render_direct(const DirectInput& input, DirectState& state) {
   state.sums.resize(renderer.pixels() * DirectState::kSums);
   const std::size_t passes = most_passes(settings, input.scene.film);
   const std::size_t first = state.passes;
-  // The picture of the other layers is one pass more.
+  // Renders the other layers in one more pass.
   const auto expect = [&](std::size_t all) {
     if (input.monitor != nullptr)
       input.monitor->total = (std::max(all, state.passes) - first + 1) * renderer.work_per_pass();
   };
-  // Noise falls with the root of the passes; how many it takes is not known of the first few.
+  // Noise falls with the root of the number of passes; the first few passes give no reliable estimate.
   bool good_enough = false;
   const auto look = [&] {
     if (!settings.until_error) return expect(passes);

@@ -9,11 +9,11 @@
 namespace opaline {
 namespace {
 
-// Entries carrying less than this fraction of a usual one are dropped at random and the others made up for it:
-// far sides of a steep profile would cost shadow rays for nothing.
+// Russian roulette below this fraction of a typical weight: the far tail of a steep profile is not worth its
+// shadow rays.
 constexpr float kRouletteBelow = 0.05f;
 
-// True if the entry goes on, its weight divided by the chance of that.
+// True if the entry survives Russian roulette; divides its weight by the probability.
 bool survives(Entry& entry, float usual, double random) {
   const float chance = max_component(entry.weight) / (kRouletteBelow * usual);
   if (chance >= 1) return true;
@@ -36,14 +36,14 @@ RgbF entering_tint(const DirectExitanceInput& input, const Entry& entry, std::si
   return input.textures->tint(place).entering;
 }
 
-/// How much of the light entering there from a direction leaves at the exit.
+/// Fraction of the light entering from a direction that leaves at the exit.
 RgbF weight_of(const EntrySampler& sampler, const SurfacePoint& exit, const Entry& entry,
                const Vec3f& towards_light) {
   if (!sampler.is_directional() || !(entry.inverse_density > 0)) return entry.weight;
   return sampler.directional(exit, entry.point, towards_light) * entry.inverse_density;
 }
 
-/// Where the profile asks for the light's direction: ray by ray.
+/// For profiles depending on the light's direction: ray by ray.
 void add_directed_light(const DirectExitanceInput& input, const PointIrradianceInput& at,
                         std::span<const Entry> entries, std::span<const std::size_t> exits,
                         std::vector<RgbF>& exitance) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radiant exitance at points by sampling where the light entered.
+// Radiant exitance at points, by sampling entry points.
 #pragma once
 
 #include "methods/direct/entry_sampler.h"
@@ -12,7 +12,7 @@ class Shader;
 
 struct DirectExitanceInput {
   const EntrySampler& sampler;
-  PointIrradianceInput exits;  ///< points that light leaves, their keys, lights and boundary
+  PointIrradianceInput exits;  ///< points of exit, their keys, lights and boundary
   int entry_samples = 1;       ///< a point, >= 0
   /// Textures of the tint, with the positions of the exits; null: none.
   const SurfaceTextures* textures = nullptr;
@@ -20,8 +20,8 @@ struct DirectExitanceInput {
   const Shader* gathers = nullptr;  ///< as Pass::gathers
 };
 
-/// Unbiased estimates of M_o at each point, W/mm^2: the mean over the samples of weight x E at their entries,
-/// with one shadow ray to each light from each entry, and one ray to what else may send light there.
+/// Unbiased estimates of M_o at each point, W/mm^2: mean over the samples of weight x E at their entries.
+/// Each entry traces one shadow ray per light, and one ray for indirect light.
 std::vector<RgbF> direct_exitance(const DirectExitanceInput& input);
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `direct`: the places where light entered are drawn at random, unbiased and noisy.
+// Field of `direct`: entry points sampled at random, unbiased and noisy.
 #pragma once
 
 #include "methods/direct/direct_exitance.h"

@@ -25,8 +25,8 @@ std::string text_of(const Image& image, const std::string& key) {
   return {};
 }
 
-// The image with its channels in this order, whatever the file's reader makes of it; nothing if any is
-// missing or one too many.
+// The image with its channels in this order, independent of the reader's order; empty unless exactly these
+// are present.
 std::vector<float> values_in_order(const Image& image, const std::vector<std::string>& channels) {
   std::vector<float> values;
   if (image.channels.size() != channels.size()) return values;

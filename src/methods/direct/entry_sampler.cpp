@@ -13,15 +13,15 @@ namespace {
 
 constexpr float kNormalShare = 0.5f, kTangentShare = 0.25f;
 
-// Below this fraction of the smallest mean free path the table's kernel stays constant; so small a part of
-// the flux enters there.
+// The table's kernel is constant below this fraction of the smallest mean free path; little of the flux
+// enters there.
 constexpr double kSmallestDistance = 1e-5;
 
-// A mean free path below this fraction of the group's reach is a few roundings of a place, or less; and light
-// that moves so little is as good as not moved.
+// Mean free paths below this fraction of the body's reach are no more than a few rounding errors of a
+// position, and count as zero.
 constexpr double kLocal = 1e-6;
 
-// Without the channels whose light leaves where it enters.
+// Removes the channels with zero mean free path.
 DiffuseProfile carried_part(DiffuseProfile profile, double reach) {
   for (std::size_t c = 0; c < 3; ++c)
     if (profile.mean_free_path[c] <= kLocal * reach) {
@@ -94,7 +94,7 @@ void EntrySampler::sample(const SurfacePoint& exit, const EntryRandom& random, s
     const SurfacePoint point = rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v);
     const Vec3f offset = point.position - exit.position;
     const float p = density(exit, offset, point.geometric);
-    if (!(p > 0)) continue;  // as far as that the profile is 0 too
+    if (!(p > 0)) continue;  // the profile has underflowed
     const bool crosses = far_table_ && !same_sheet(point.geometric, exit.geometric);
     alignas(16) float kernel[4];
     _mm_store_ps(kernel, (crosses ? *far_table_ : table_)(dot(offset, offset)));
@@ -150,7 +150,7 @@ float EntrySampler::channel_mean(float r2) const {
   return kernel[0] * inverse_total_[0] + kernel[1] * inverse_total_[1] + kernel[2] * inverse_total_[2];
 }
 
-// Expected entries per area at a place; normal: geometric, there.
+// Expected entries per area at a point; normal: geometric.
 float EntrySampler::density(const SurfacePoint& exit, const Vec3f& offset, const Vec3f& normal) const {
   if (strategy_ == EntryStrategy::chords) return channel_mean(dot(offset, offset)) / 2;
   const Frame frame(exit.geometric);

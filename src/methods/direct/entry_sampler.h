@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where light leaving a point may have entered.
+// Sampling of entry points for a point of exit.
 #pragma once
 
 #include <array>
@@ -20,27 +20,26 @@ struct EntryRandom {
   std::uint64_t key;
 };
 
-/// An entry point of one sample: M_o is the expected sum of weight x E(point) over the entries of a sample.
+/// One entry point of a sample: M_o is the expected sum of weight x E(point) over the entries of a sample.
 struct Entry {
   SurfacePoint point;
-  RgbF weight;                ///< R_d / density per area, per channel
-  float inverse_density = 0;  ///< per area; 0: the weight is of light leaving where it entered
+  RgbF weight;                                    ///< R_d / density per area, per channel
+  float inverse_density = 0;                      ///< per area; 0: the weight is of local reflection
   std::uint32_t mesh = Hit::kMiss, triangle = 0;  ///< mesh and triangle of the point; kMiss: the exit itself
   float u = 0, v = 0;
   RgbF tint{1, 1, 1};  ///< tint of the light entering
 };
 
-/// Draws entry points on the surfaces of one group of translucent meshes with a density near R_d of their
-/// distance.
+/// Importance-samples entry points on the surfaces of a body by R_d of the distance.
 ///
-/// `disc_axes` (King et al. 2013, BSSRDF Importance Sampling): a line along one of three axes (the normal,
-/// half of the time, and two tangents) through a disc around the point, at a distance drawn from one
-/// channel's profile; every crossing with the group is an entry. Balance heuristic over axes and channels.
-/// R_d falls with distance and the disc shortens it, so a weight is at most total / (1/4 x 1/sqrt(3) x
-/// 1/channels): no fireflies, nothing cut. `chords`: a random chord of a sphere around the point, see
-/// sample_chord_sphere_radius. Weight 2 x total for one channel, whatever the surface.
-/// Channels whose mean free path is below what places in floats resolve send out light where it enters: the
-/// exit itself is their entry.
+/// `disc_axes` (King et al. 2013, BSSRDF Importance Sampling): a line along one of three axes (the normal
+/// with probability 1/2, and two tangents) through a disc around the point, at a distance sampled from one
+/// channel's profile; every intersection with the body is an entry. Balance heuristic over axes and channels.
+/// R_d falls with distance and projection to the disc shortens distances, so weights are at most total / (1/4
+/// x 1/sqrt(3) x 1/channels).
+/// `chords`: a random chord of a sphere around the point, see sample_chord_sphere_radius. Weights are at most
+/// 2 x total for one channel, for any surface. Channels with a mean free path below float resolution reflect
+/// locally: the exit itself is their entry.
 class EntrySampler {
  public:
   EntrySampler(const GroupPlan& plan, const DiffuseProfile& profile, const RayScene& rays, double diagonal,
@@ -48,12 +47,12 @@ class EntrySampler {
 
   const std::vector<std::uint32_t>& meshes() const { return meshes_; }
 
-  /// About the largest channel's weight of an entry on a flat surface.
+  /// Approximate weight of an entry on a flat surface, largest channel.
   float usual_weight() const { return usual_weight_; }
 
-  /// True if R_d depends on the direction of the light; the weights then have its mean.
+  /// True if R_d depends on the direction of the light; the weights then contain its mean.
   bool is_directional() const { return is_directional_; }
-  /// R_d, 1/mm^2, for light from a direction, per channel; 0 of channels whose light leaves where it enters.
+  /// R_d, 1/mm^2, for light from a direction, per channel; 0 for local channels.
   RgbF directional(const SurfacePoint& exit, const SurfacePoint& entry, const Vec3f& towards_light) const;
 
   /// Adds the entries of one sample to `entries`; crossings: scratch.
@@ -63,7 +62,7 @@ class EntrySampler {
  private:
   struct Line {
     Ray ray;
-    bool empty = false;  // nothing of the group can lie on it
+    bool empty = false;  // the line misses the body
   };
   Line disc_line(const SurfacePoint& exit, const EntryRandom& random) const;
   Line chord_line(const SurfacePoint& exit, const EntryRandom& random) const;
@@ -76,12 +75,12 @@ class EntrySampler {
   const RayScene& rays_;
   LineQuery lines_;
   KernelTable table_;
-  std::optional<KernelTable> far_table_;  // between sheets, of profiles that have a far side
+  std::optional<KernelTable> far_table_;  // between sheets, if the profile has a far side
   bool is_directional_ = false;
-  double reach_;  // no two points of the group are farther apart, mm
+  double reach_;  // upper bound of the distance of two points of the body, mm
   EntryStrategy strategy_;
-  RgbF local_;                         // total of the channels whose light leaves where it enters
-  std::vector<std::size_t> channels_;  // the others scattering
+  RgbF local_;                         // total of the local channels
+  std::vector<std::size_t> channels_;  // the other scattering channels
   float usual_weight_ = 0;
   std::array<float, 3> inverse_total_{};  // 1 / (channels x total)
 };

@@ -80,7 +80,8 @@ ResultSource update_tree(BodyStages& stages, const StageKey& key) {
   });
 }
 
-/// Reads the shapes of tabulated profiles from the cache before random walks would compute them, and keeps computed ones.
+/// Reads the shapes of tabulated profiles from the cache before random walks would compute them, and keeps
+/// computed ones.
 void find_walked_profiles(BodyStages& stages) {
   if (!stages.store.has_cache()) return;
   for (const ChannelProfile& channel : stages.body.profile.channels) {
@@ -129,8 +130,8 @@ StageKey exitance_key(const BodyStages& stages, const HierarchicalState& state) 
   return key.key();
 }
 
-/// Evaluates the exitance over the surface if that is cheaper than at the hits. The decision depends on the scene alone,
-/// not on what is cached. Returns true if the body uses a surface cache.
+/// Evaluates the exitance over the surface if cheaper than at the hits; the decision depends on the scene
+/// alone, not on cached results. Returns true if the body uses a surface cache.
 bool update_surface_cache(BodyStages& stages, HierarchicalState& state) {
   const std::size_t most = stages.most_cache_places;
   if (most == 0) return false;

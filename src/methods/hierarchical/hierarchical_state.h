@@ -16,7 +16,7 @@ struct Kernels {
 
 struct HierarchicalState : MethodState {
   static constexpr Method kMethod = Method::hierarchical;
-  std::vector<RgbF> irradiance;  ///< transmitted, one a sample, from lights and other surfaces
+  std::vector<RgbF> irradiance;  ///< transmitted, one per sample, from lights and other surfaces
   StageResult<Octree> tree;      ///< octree of the irradiance
   StageKey direct_key;           ///< direct key of the tree before bounced light is added
   StageResult<Kernels> kernels;
@@ -34,17 +34,17 @@ const HierarchicalState& hierarchical_state(const Body& body);
 HierarchicalState& hierarchical_state(Body& body);
 
 /// Octree of the transmitted flux.
-/// in    irradiance: one a sample
+/// in    irradiance: one per sample
 Octree gather_flux(std::span<const SurfaceSample> samples, std::span<const RgbF> irradiance);
 /// Bounds the normals of the tree's nodes if the kernel has a far side.
 void bound_far_side(HierarchicalState& state);
 /// Gives a body the state of an irradiance, without a surface cache or an estimate of its error.
 void set_hierarchical_state(Body& body, std::vector<RgbF> irradiance, SplitKernel kernel);
 
-/// Laboratory::near_irradiance, but the samples' if all light comes from all directions: rays at each point are as noisy as
-/// those at the samples, and there are no sharp shadows.
+/// Laboratory::near_irradiance, but from the samples if all light is uniform over directions: rays at each
+/// point are as noisy as those at the samples, and there are no sharp shadows.
 NearIrradiance near_irradiance(const Scene& scene);
-/// Kernel of a body, split at a distance that the spacing of its samples, mm, decides.
+/// Kernel of a body, split at a distance proportional to the sample spacing, mm.
 SplitKernel body_kernel(const DiffuseProfile& profile, double spacing, const World& world,
                         const Scene& scene);
 

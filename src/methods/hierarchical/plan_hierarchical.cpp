@@ -10,12 +10,12 @@
 namespace opaline {
 namespace {
 
-// Measured by bench_plan at 1 and 10 million samples: samples, weights and tree while its nodes are written; besides of a
-// light's weights; where light bounces; in needles, on a ring 1e5 times thinner than wide.
+// Bytes, fitted to bench_plan at 1 and 10 million samples: samples, weights and tree while its nodes are
+// written; per further light, weights; with bounces; in needles, on a ring 1e5 times thinner than wide.
 constexpr std::size_t kBytesOfSample = 191, kBytesOfLight = 4, kBytesOfBounces = 165;
 constexpr double kBytesOfNeedle = 250;
 
-/// Warns of a body that is thinner than the spacing of its samples.
+/// Warns of a body thinner than its sample spacing.
 void warn_of_thin_body(const GroupPlan& body, std::vector<std::string>& warnings) {
   const double thickness = body.thickness;
   if (!(thickness > 0 && thickness < body.spacing)) return;

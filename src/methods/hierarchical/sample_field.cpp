@@ -56,7 +56,7 @@ RgbF in_quadrature(const RgbF& a, const RgbF& b) {
   return {std::hypot(a.x, b.x), std::hypot(a.y, b.y), std::hypot(a.z, b.z)};
 }
 
-/// Null: pictures hold nothing.
+/// Null: images cache nothing.
 std::shared_ptr<IrradianceLattice>* held_lattice(const RenderInput& input, const Body& group) {
   if (input.view == nullptr) return nullptr;
   input.view->lattices.resize(input.groups.size());
@@ -86,7 +86,7 @@ LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput light
   return light;
 }
 
-// Evaluates the points that the surface cache does not cover.
+// Evaluates the points not covered by the surface cache.
 void SampleField::replace_left(const SurfaceHits& hits, const PointIrradianceInput& lighting,
                                LeavingLight& light) const {
   std::vector<std::uint32_t> left;
@@ -122,13 +122,13 @@ LeavingLight SampleField::at_points(const SurfaceHits& hits, PointIrradianceInpu
       state_.cache() != nullptr && asks_irradiance_
           ? looked_up(hits, light.irradiance)
           : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
-  // Beside a tint's edges the samples' irradiance differs from that of the point without a shadow's edge near.
+  // Beside edges of a tint, the samples' irradiance differs from the point's own without a shadow edge.
   if (looks_near && group_.entering.empty()) refine_near_field(lighting, exitance, light);
   put_exitance(exitance, light);
   return light;
 }
 
-// With the irradiance, if it was not traced at the hits.
+// With the irradiance, unless it was traced at the hits.
 void SampleField::put_exitance(std::span<const Exitance> exitance, LeavingLight& light) const {
   const bool is_traced = !light.irradiance.empty();
   for (std::vector<RgbF>* values : {&light.exitance, &light.error, &light.irradiance})
@@ -163,7 +163,7 @@ std::vector<Exitance> SampleField::looked_up(const SurfaceHits& hits,
   return exitance;
 }
 
-// The irradiance at the hit is noisy, and beside a shadow edge not that of its near field.
+// Replaces the irradiance at the hit: it is noisy, and beside a shadow edge not the near field's.
 void SampleField::refine_near_field(const PointIrradianceInput& lighting, std::vector<Exitance>& exitance,
                                     LeavingLight& light) const {
   const auto& share = state_.kernel().own_irradiance;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The exitance of a group's samples: summed at the hits (dual_tree, classic, brute_force), or looked up in
-// its surface cache. What a sharp near field adds to either is traced at the hits; what a cache leaves to the
-// points is summed there.
+// Exitance of a body's samples: summed at the hits (dual_tree, classic, brute_force), or interpolated in its
+// surface cache. Near fields with shadow edges are traced at the hits; points not covered by the cache are
+// summed there.
 #pragma once
 
 #include <optional>
@@ -38,7 +38,7 @@ class SampleField : public Field {
   const Body& group_;
   const HierarchicalState& state_;
   bool is_noisy_, asks_irradiance_;
-  std::optional<NearFieldSampler> near_field_;  ///< none: samples or cache tell all
+  std::optional<NearFieldSampler> near_field_;  ///< none: samples or cache suffice
   RgbF creases_{};  ///< error of the near field at creases, over the exitance, as a standard deviation
 };
 

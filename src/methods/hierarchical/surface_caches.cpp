@@ -140,7 +140,7 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
 // vertices.
 constexpr double kBegin = 0.11, kMost = 0.4;
 
-// Points of the picture on each mesh, by rays to a few of its pixels.
+// Estimates the image's points on each mesh, by rays through a few pixels.
 std::vector<double> expected_points(const PrecomputeInput& input) {
   constexpr int kColumns = 48, kRows = 48;
   const Film& film = input.scene.film;

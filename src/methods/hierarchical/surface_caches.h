@@ -10,18 +10,18 @@
 
 namespace opaline {
 
-/// The most places of a group's surface cache where the settings ask for one, and the memory that a place may
-/// take while the cache is made, bytes (measured). A surface that takes more, such as needles cut into
-/// squares of the near field's size, is evaluated at the points of the picture.
+/// Maximum points of a body's surface cache on request, and bytes of a point during its construction
+/// (bench_plan). Surfaces exceeding it, such as needles cut into squares of the near field's size, are
+/// evaluated at the image's points.
 std::size_t most_wanted_places(const GroupPlan& group, const World& world);
 inline constexpr std::size_t kBytesOfPlace = 250;
-/// The places that such a cache is expected to have, at most most_wanted_places.
+/// Expected points of such a cache, at most most_wanted_places.
 std::size_t expected_cache_places(const GroupPlan& group, const World& world);
 
-/// For each group of the plan the most places that a surface cache may have: most_wanted_places if the
-/// settings ask for one, 0 if they ask for another evaluator; if they leave it open a part of the points at
-/// which the camera sees the group, times the pictures. A crop counts as the whole picture, whose bytes it
-/// shares. 0 where a tint colours light entering: a cache does not know its details.
+/// Maximum points of a surface cache, one per body of the plan: most_wanted_places if the settings request a
+/// cache, 0 if they request another evaluator, otherwise a fraction of the body's visible points times the
+/// images. A crop counts as the full image, to have the same pixels. 0 with a tint of transmitted light, too
+/// detailed for a cache.
 std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::span<const Body> groups,
                                            std::size_t pictures = 1);
 
@@ -29,7 +29,7 @@ std::vector<std::size_t> most_cache_places(const PrecomputeInput& input, std::sp
 bool may_use(const SurfaceCache& cache, const PrecomputeInput& input, const Body& group,
              std::size_t most_places);
 
-/// None if it would take more than most_places, or so many vertices that it would look likely.
+/// Makes a surface cache; none if it exceeds most_places, or has so many vertices that it would.
 std::optional<SurfaceCache> make_body_cache(const PrecomputeInput& input, const Body& group,
                                             std::size_t most_places);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `lambert`: diffuse reflection at the hit, the limit of a vanishing mean free path and the floor of all costs.
+// `lambert`: diffuse reflection at the hit, the limit of a vanishing mean free path and the floor of all
+// costs.
 #pragma once
 
 #include "methods/method.h"

@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::size_t kBlocks = 16;
 
-/// Hits lying close together: of 4 x 4 pixels of a tile of 16 x 16, whose rays go row by row.
+/// Block of 4 x 4 pixels in a tile of 16 x 16, with rays row by row: its hits are close together.
 std::size_t block_of(std::uint32_t ray) {
   return ray / 64 % 4 * 4 + ray / 4 % 4;
 }
 
 struct Blocks {
-  std::vector<std::uint32_t> hits;               ///< those of one block after those of the one before
+  std::vector<std::uint32_t> hits;               ///< block by block
   std::array<std::size_t, kBlocks + 1> first{};  ///< first hit of each block
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radiant exitance known as means over the cells of samples, interpolated between them.
+// Radiant exitance interpolated between means over the samples' cells.
 #pragma once
 
 #include "opaline/render/render.h"
@@ -10,11 +10,11 @@ namespace opaline {
 
 class CellField : public Field {
  public:
-  /// local: diffuse reflectance of channels without a mean free path, which cells do not resolve; 0 in the others. All
-  /// must outlive the field.
+  /// local: diffuse reflectance of channels without a mean free path, which is below the resolution of cells;
+  /// 0 in the others. All must outlive the field.
   CellField(const RenderInput& input, const Body& body, const CellFit& fit, const RgbF& local);
 
-  /// The error is the noise of the means and the error of the interpolation.
+  /// The error is the sum of the means' noise and the interpolation error.
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
   float eta() const override { return float(body_.profile.eta); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Defects of a body's meshes that random walks or cells have found.
+// Defects of a body's meshes found by random walks or cells.
 #pragma once
 
 #include <string>

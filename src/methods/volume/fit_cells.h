@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fit of the means over a body's cells, with weights that later fits of the same samples reuse.
+// Fit of the means over a body's cells, with weights cached for later fits of the same samples.
 #pragma once
 
 #include <memory>
@@ -13,8 +13,8 @@ namespace opaline {
 
 using ReusedWeights = StageResult<std::shared_ptr<const CellWeights>>;
 
-/// in    means, errors: one a sample of the body; weights: of earlier fits, replaced if the samples changed; unused if no
-///       later fit is expected
+/// in    means, errors: one per sample of the body; weights: of earlier fits, replaced if the samples
+///       changed; unused if no later fit is expected
 std::shared_ptr<const CellFit> fit_cells(BodyStages& stages, ReusedWeights& weights,
                                          std::span<const RgbF> means, std::span<const RgbF> errors);
 

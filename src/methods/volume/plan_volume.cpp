@@ -11,8 +11,8 @@
 namespace opaline {
 
 BodyMemory VolumeMethod::memory(const BodyPlanning& input, const GroupPlan& body) const {
-  // Measured: samples; what finds the cells, their fits and exitance; of each channel counts of a pass's chunks, and of
-  // each light sums.
+  // Bytes, fitted to bench_plan: per sample; its search structure, fits and exitance; per channel, counts of
+  // a pass's chunks; per light, sums.
   constexpr std::size_t kSample = 191, kWalkedCell = 300, kWalkedChannel = 64, kWalkSums = 24;
   return {
       .kept = body.samples * (kSample + kWalkedCell + 6 * kWalkedChannel + input.lights.size() * kWalkSums),

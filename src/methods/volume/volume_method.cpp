@@ -20,8 +20,8 @@ namespace {
 // Raise when walks compute other values from the same input (test_stage_versions).
 constexpr std::uint64_t kWalksVersion = 3;
 
-/// Keys of the sums, one for each of their sources: the samples (or their tint), the media, all meshes, the position and
-/// size of the source's light; its colour only where sources have several lights.
+/// Keys of the sums, one for each of their sources: the samples (or their tint), the media, all meshes, the
+/// position and size of the source's light; its colour only where sources have several lights.
 std::vector<StageKey> walk_keys(const BodyStages& stages, const VolumeInput& walks, const StageKey& tint) {
   const StageKey medium_inside = medium_key(stages.input.scene.media[stages.body.plan.medium],
                                             stages.input.world, stages.body.plan.meshes);
@@ -76,7 +76,7 @@ const VolumeState& volume_state(const Body& body) {
   return state_of<VolumeState>(body);
 }
 
-// Sums are of whole passes: an interruption keeps those that are complete.
+// Sums consist of whole passes: an interruption keeps the complete ones.
 void VolumeMethod::prepare(BodyStages& stages) const {
   const PrecomputeInput& input = stages.input;
   auto& state = state_of<VolumeState>(stages.body);

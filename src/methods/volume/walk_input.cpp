@@ -11,7 +11,7 @@ namespace opaline {
 namespace {
 
 constexpr double kMostAnisotropy = .95;
-constexpr double kLeastOffsets = 16;  // in a mean free path, of a ray's origin from the surface
+constexpr double kLeastOffsets = 16;  // ray offsets from the surface in a mean free path, at least
 
 double anisotropy_of(const Medium& medium) {
   const auto* artist = std::get_if<ArtistMedium>(&medium.coefficients);
@@ -24,10 +24,10 @@ double diagonal_of(const World& world, std::span<const std::uint32_t> meshes) {
   return length(box.high - box.low);
 }
 
-/// least: of the mean free path of what is walked
+/// least: smallest mean free path of the walks
 HomogeneousMedium walked_medium(const ReducedMedium& reduced, double g, double least) {
   const double absorbed = reduced.absorbed;
-  // 1/sigma_t of what is walked, over the reduced one.
+  // 1/sigma_t of the walks, over 1/sigma_t'
   const double shortening = 1 / (absorbed + (1 - absorbed) / (1 - g));
   const double length = std::max(reduced.mean_free_path, least / shortening);
   return {absorbed / length, (1 - absorbed) / (length * (1 - g)), g, reduced.eta};

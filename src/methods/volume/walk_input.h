@@ -9,13 +9,14 @@
 
 namespace opaline {
 
-/// Random walks inside a body with its samples. Walks keep the mean cosine g of the medium (at most .95: walks of the same
-/// reduced coefficients come close to larger ones) and take sigma_s = sigma_s' / (1 - g). Mean free paths that rays cannot
-/// resolve, below about 1e-4 of the body, are lengthened: on the scale of such a body light leaves where it enters.
+/// Inputs of random walks inside a body with samples. Walks use the mean cosine g of the medium, at most 0.95
+/// (beyond, walks with the same reduced coefficients are nearly equal), and sigma_s = sigma_s' / (1 - g).
+/// Mean free paths below the resolution of rays, about 1e-4 of the body, are lengthened: transport is local
+/// at that scale.
 /// in    lights: recentred; they and the body outlive the result
 VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
 
-/// 1/sigma_t of the medium that random walks take, the least of the channels, world units.
+/// Smallest 1/sigma_t of the walks' channels, world units.
 double walked_mean_free_path(const Scene& scene, const World& world, const GroupPlan& group);
 
 }  // namespace opaline

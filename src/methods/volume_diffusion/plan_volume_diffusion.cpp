@@ -30,7 +30,7 @@ std::string reason_against_cells(const Scene& scene, const World& world, const G
   return {};
 }
 
-/// Warns if closing the mesh would let cells answer for the body.
+/// Warns if closing the mesh would make cells applicable to the body.
 void warn_of_open_mesh(const Scene& scene, const GroupPlan& body, std::vector<std::string>& warnings) {
   if (body.thickness > 0 || !(body.smallest_mean_free_path > 0)) return;
   const bool is_filled = std::ranges::all_of(body.meshes, [&](std::uint32_t mesh) {
@@ -44,8 +44,8 @@ void warn_of_open_mesh(const Scene& scene, const GroupPlan& body, std::vector<st
 
 /// CPU seconds to trace the light transmitted at a sample from one direction.
 double seconds_of_entry(const Medium& medium, const GroupPlan& body) {
-  constexpr double kEntry = 2e-7;      // a direction from which light enters at a sample
-  constexpr double kEntryCell = 9e-8;  // a cell that this light crosses
+  constexpr double kEntry = 2e-7;      // per direction of incident light at a sample
+  constexpr double kEntryCell = 9e-8;  // per cell crossed by this light
   constexpr double kMostCrossed = 50;  // cells far inside are larger
   const double longest = max_component(make_diffuse_profile(medium).mean_free_path);
   return kEntry + kEntryCell * std::min(kMostCrossed, std::min(longest, body.thickness) / body.cell);
@@ -66,10 +66,10 @@ void VolumeDiffusionMethod::plan(const BodyPlanning& input, GroupPlan& body,
 }
 
 BodyMemory VolumeDiffusionMethod::memory(const BodyPlanning& input, const GroupPlan& body) const {
-  // Measured: where a cell cuts the surface, its exitance and error, while all are fitted; a light's weights; where light
-  // bounces, weights kept for a second fit, that fit, what is gathered and what it adds.
+  // Bytes, fitted to bench_plan: per cell cutting the surface, exitance and error during the fits; per light,
+  // weights; with bounces, weights for a second fit, the fit, and the gathered light.
   constexpr std::size_t kCutSample = 640, kLight = 4, kBounces = 500;
-  constexpr double kVaryingCell = 350;  // its own medium, and the flow to each neighbour
+  constexpr double kVaryingCell = 350;  // its own medium, and the flux to each neighbour
   const double in_wires =
       body.thickness > 0 ? 1.2 * needle_fraction(input.world, body) * body.cell / body.thickness : 0;
   BodyMemory memory;

@@ -78,7 +78,7 @@ const VolumeDiffusion& update_cells(BodyStages& stages) {
   return *cells.value;
 }
 
-/// Diffuse reflectance of the channels without a mean free path, which cells do not resolve.
+/// Diffuse reflectance of the channels without a mean free path, which is below the resolution of cells.
 RgbF local_reflectance(const Scene& scene, const Body& body) {
   RgbF local;
   if (varies_inside(scene.media[body.plan.medium])) return local;

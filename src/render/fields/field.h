@@ -20,10 +20,11 @@ class Shader;
 struct Pass {
   std::uint64_t index = 0;
   int entry_samples = 0;  ///< entry samples of each camera ray
-  bool is_seen = true;    ///< false: for rays that gather light; without a near field
-  /// `direct`: gathering of light from other surfaces at points of entry, by one ray each; null: direct light only.
+  bool is_seen = true;    ///< false: for gathered rays; without a near field
+  /// `direct`: gathering of light from other surfaces at points of entry, by one ray each; null: direct light
+  /// only.
   const Shader* gathers = nullptr;
-  /// The same for surfaces seen in specular reflections; null: the same.
+  /// The same for surfaces visible in specular reflections; null: the same.
   const Pass* in_mirrors = nullptr;
 };
 
@@ -32,7 +33,7 @@ struct SurfaceHits {
   std::vector<SurfacePoint> points;
   std::vector<Hit> hits;              ///< mesh, triangle, barycentrics
   std::vector<std::uint64_t> keys;    ///< choose the random numbers of a hit
-  std::vector<std::uint32_t> rays;    ///< their places in the batch
+  std::vector<std::uint32_t> rays;    ///< their indices in the batch
   std::vector<HitTextures> textures;  ///< empty: the scene has none
 };
 
@@ -61,8 +62,8 @@ class Field {
   virtual bool asks_samples() const { return false; }
 };
 
-/// Irradiance at the hits, from lights by shadow rays unless cached, and from other surfaces; without tints. The
-/// camera rays of a pixel, numbered by their keys, share one set of light samples.
+/// Irradiance at the hits, from lights by shadow rays unless cached, and from other surfaces; without tints.
+/// The camera rays of a pixel, numbered by their keys, share one set of light samples.
 std::vector<RgbF> irradiance_at_hits(const PointIrradianceInput& lighting, int samples_per_pixel,
                                      HeldView::Surface* held);
 

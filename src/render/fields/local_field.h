@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light leaving where it entered: opaque surfaces, and `lambert`, the limit of a vanishing mean free
-// path.
+// Diffuse reflection at the hit: opaque surfaces, and `lambert`, the limit of a vanishing mean free path.
 #pragma once
 
 #include "opaline/render/render.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body whose surface reflects some of its light diffusely (subsurface_weight), over the field of what scatters inside.
+// Surface with a diffusely reflecting fraction (1 - subsurface_weight) over the field of a translucent body.
 #pragma once
 
 #include <memory>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Edits of this page take precedence over the scene from the server until a moment after the last edit: what
-// comes in may be older, and the next change starts from here.
+// Edits of this page take precedence over the server's scene until a moment after the last edit: incoming
+// scenes may be older, and the next edit builds on them.
 import {kPause} from "./connection.js";
 
-// A copy of a scene, or of a part of it, with the value at a path as `--set` takes it.
+// Copy of a scene, or of a part of it, with the value at a path as in `--set`.
 function withValue(owner, [key, ...rest], value) {
   const copy = Array.isArray(owner) ? [...owner] : {...owner};
   const named = Array.isArray(owner) ? owner.findIndex((element) => element.name === key) : -1;
@@ -13,7 +13,8 @@ function withValue(owner, [key, ...rest], value) {
 }
 
 export class Ahead {
-  // over(): called once the server's scene alone counts again, but for `clear`, after which it comes anyway
+  // over(): called once the server's scene takes precedence again, except after `clear`, when the server
+  // sends it anyway
   constructor(over) {
     Object.assign(this, {over, values: {}, end: 0});
   }

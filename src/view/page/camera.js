@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera of a scene: how it is turned, and where it sees a point. Lengths in scene units.
+// Camera of a scene: its rotation, and the projection of points. Lengths in scene units.
 
 export const add = (a, b) => a.map((x, i) => x + b[i]);
 export const sub = (a, b) => a.map((x, i) => x - b[i]);
@@ -9,10 +9,10 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const length = (a) => Math.sqrt(dot(a, a));
 const unit = (a) => scale(a, 1 / (length(a) || 1));
 
-// Few digits, that commands stay short.
+// Rounds to few digits, to keep commands short.
 export const rounded = (x) => Array.isArray(x) ? x.map(rounded) : Number(x.toPrecision(6));
 
-// The view's own where it has one: scene.look.
+// Free camera of the view, if any: scene.look.
 export function cameraOf(scene) {
   const given = {...scene.camera, ...scene.look};
   return {
@@ -37,7 +37,7 @@ function turned(v, axis, angle) {
   return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));
 }
 
-// Keys that rotate a distant light about +y, counterclockwise seen from above, in radians; null for near lights.
+// Keys rotating a distant light about +y, counterclockwise seen from above, in radians; null for near lights.
 export function turnedLight(light, angle) {
   if (light.type === "directional") return {direction: rounded(turned(light.direction, [0, 1, 0], angle))};
   if (light.type !== "environment") return null;
@@ -45,7 +45,7 @@ export function turnedLight(light, angle) {
   return {rotation: rounded(degrees - 360 * Math.round(degrees / 360))};
 }
 
-// Angles in radians: around what it looks at, as on a turntable.
+// Orbits the point of interest, as on a turntable. Angles in radians.
 export function orbit(camera, around, over) {
   const {right} = basis(camera), up = unit(camera.up);
   const from = sub(camera.position, camera.look_at);
@@ -54,7 +54,7 @@ export function orbit(camera, around, over) {
   return {...camera, position: add(camera.look_at, turned(turned(from, right, tilt), up, around))};
 }
 
-// Shares of the picture's height.
+// Fractions of the image height.
 export function pan(camera, x, y) {
   const {right, up, distance} = basis(camera);
   const size = 2 * distance * Math.tan(camera.field_of_view * Math.PI / 360);
@@ -66,11 +66,11 @@ export function dolly(camera, factor) {
   return {...camera, position: add(camera.look_at, scale(sub(camera.position, camera.look_at), factor))};
 }
 
-// Size of a picture's height at a depth.
+// Height of the image at a depth.
 export const heightAt = (camera, depth) => 2 * depth * Math.tan(camera.field_of_view * Math.PI / 360);
 
-// Where a point is seen: x and y from 0 to 1 within the whole film, and its depth. What is behind the camera is put
-// on the side that it is on.
+// Projection of a point: x and y in [0, 1] of the full film, and its depth. Points behind the camera keep
+// their side.
 export function project(camera, aspect, point) {
   const {forward, right, up, distance} = basis(camera);
   const to = sub(point, camera.position);

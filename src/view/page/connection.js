@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The socket: tries again when the server is gone, and brings a new server to the edits, frame and camera of this page.
+// Reconnects when the server is gone, and sends this page's edits, frame and camera to a new server.
 
 const kFirstWait = 250, kLongestWait = 4000;  // ms
-export const kPause = 400;                    // ms, after which a change is a new one
+export const kPause = 400;                    // ms without edits until a new stroke begins
 
 export class Connection {
   // handlers: {text(message), frame(buffer), lost(), found()}
@@ -42,7 +42,7 @@ export class Connection {
         this.handlers.found();
         if (message.revision === 1 && this.edits.length) {
           this.send({do: "restore", edits: this.edits});
-          this.edits = [];  // once: a server that refuses them has the say
+          this.edits = [];  // sent once: a server may refuse them
           return;
         }
       }
@@ -56,13 +56,13 @@ export class Connection {
     this.handlers.text(message);
   }
 
-  // After the values that wait, whatever it is.
+  // Sends pending values first.
   send(message) {
     this.flush();
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
   }
 
-  // Values of one stroke; those of a moment go together.
+  // Values of one stroke, sent together after a moment.
   set(values, stroke) {
     if (this.stroke !== stroke) this.flush();
     this.stroke = stroke;
@@ -70,7 +70,7 @@ export class Connection {
     Object.assign(this.waiting, values);
   }
 
-  // The view's own camera: the last one of a moment.
+  // The view's own camera: only the last one within a moment.
   look(camera) {
     this.waitingLook = camera;
     requestAnimationFrame(() => this.flush());
@@ -87,7 +87,7 @@ export class Connection {
 
 export const newStroke = () => 1 + Math.floor(Math.random() * 2 ** 52);
 
-// One stroke for turns of a wheel or presses of a key following each other.
+// One stroke for successive turns of a wheel or presses of a key.
 export function pausedStroke() {
   let stroke = 0, end = 0;
   return () => {

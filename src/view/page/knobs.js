@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A knob for each value of the scene, made of the server's table of keys.
+// One knob per scene value, from the server's table of keys.
 import {rounded} from "./camera.js";
 import {newStroke} from "./connection.js";
 
@@ -13,7 +13,7 @@ const kForms = {
 };
 const kNumbers = ["number", "whole_number", "length"], kThrees = ["point", "triple"];
 const kColours = ["color", "number_or_triple"];
-// Shown where the scene has them.
+// Visible if the scene has such values.
 const kOptional = ["base_color", "specular_anisotropy", "specular_rotation", "tint", "texture_mix", "thickness", "fit"];
 const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_weight", "specular_anisotropy", "specular_rotation"];
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page: what the server tells goes to the picture, the knobs and the lines below; what a person does goes back.
+// Connects the server with the image, the knobs and the status lines.
 import {Ahead} from "./ahead.js";
 import {cameraOf, dolly, lookOf, orbit, pan, turnedLight} from "./camera.js";
 import {Connection, newStroke, pausedStroke} from "./connection.js";
@@ -18,7 +18,7 @@ const display = {exposure: 0, transform: "soft", channel: ""};
 let frame = null, pinned = null, waiting = null, isDragging = false, layers = [];
 let reference = null, waitingReference = null, behind = {trade: false, reference: ""};
 
-// ---- the picture --------------------------------------------------------------------------------------------
+// ---- the image ----------------------------------------------------------------------------------------------
 
 function takeFilm() {
   const given = serverScene.film || {}, [width, height] = given.resolution || [512, 512];
@@ -37,7 +37,7 @@ function fit() {
   overlay.update();
 }
 
-// A reference is of one scene: to a changed one it says nothing.
+// A reference belongs to one scene, and is hidden after an edit.
 const leftPicture = () => pinned || (behind.reference && frame && reference?.revision === frame.revision ? reference : null);
 
 function redraw() {
@@ -90,7 +90,8 @@ function inspect() {
     ? `R G B A ${values.colour.map(text).join(" ")}${values.layer.length ? `; ${display.channel} ${values.layer.map(text).join(" ")}` : ""}` : "";
 }
 
-// ---- what a person does -------------------------------------------------------------------------------------
+// ---- user input
+// -----------------------------------------------------------------------------------------------
 
 let serverScene = null;
 const ahead = new Ahead(() => {
@@ -111,13 +112,13 @@ function set(values, stroke) {
   overlay.update();
 }
 
-// Undo and what else makes the scene another: what this page has changed is no longer ahead of it.
+// Undo and other replacements of the scene discard this page's pending edits.
 function step(message) {
   connection.send(message);
   ahead.clear();
 }
 
-// Turns the view's own camera; the scene keeps its.
+// Rotates the view's free camera; the scene keeps its own.
 function turn(change) {
   const look = lookOf(change(state.camera));
   connection.look(look);
@@ -126,7 +127,7 @@ function turn(change) {
   overlay.update();
 }
 
-// The room, and with it the sun. from: the lights before.
+// Rotates the environment together with distant lights. from: the lights before.
 function turnLights(from, angle, stroke) {
   const values = {};
   from.forEach((light, index) => Object.entries(turnedLight(light, angle) || {}).forEach(([key, value]) => {
@@ -216,7 +217,8 @@ function takePoint(point) {
   set({...(isNew ? {"settings.method": point.method} : {}), ...point.values}, newStroke());
 }
 
-// ---- what the server tells ------------------------------------------------------------------------------------
+// ---- server messages
+// ------------------------------------------------------------------------------------------
 
 function takeScene(message) {
   const isFirst = !state.scene;
@@ -242,7 +244,7 @@ function takeScene(message) {
   fit();
 }
 
-// Where a person holds the slider, it stays.
+// A slider held by the user keeps its position.
 function takeFrames({frames, frame: now}) {
   one("frames").hidden = frames.length < 2;
   state.frames = frames;
@@ -301,7 +303,7 @@ const takes = {
     one("failed").textContent = message.text;
     one("failed").hidden = false;
   },
-  // Another page may have asked for something else.
+  // Another page may have requested something else.
   behind: ({trade, reference: method}) => {
     behind = {trade, reference: method};
     one("reference").value = method;

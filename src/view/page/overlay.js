@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Over the picture: lights to drag, a ruler in millimetres, and the edge of the wipe.
+// Overlay of the image: lights to drag, a ruler in millimetres, and the edge of the wipe.
 import {add, basis, heightAt, project, rounded, scale, sub} from "./camera.js";
 import {newStroke, pausedStroke} from "./connection.js";
 
@@ -12,7 +12,7 @@ const svg = (name, attributes) => {
   return element;
 };
 
-// Where a light is and what moves it; null for lights from afar.
+// Position of a light, with the key moving it; null for distant lights.
 function placeOf(light) {
   if (light.type === "point" || light.type === "spot") return {key: "position", at: light.position, middle: light.position};
   if (light.type === "sphere") return {key: "center", at: light.center, middle: light.center};
@@ -89,7 +89,7 @@ export class Overlay {
     this.lights.append(handle);
   }
 
-  // In the plane through the light along the picture; shares of the picture's height.
+  // Moves in the plane through the light parallel to the image; fractions of the image height.
   move(path, index, from, x, y, stroke) {
     const place = placeOf(from), {right, up, forward, distance} = basis(this.state.camera);
     const depth = Math.max(sub(place.middle, this.state.camera.position).reduce((sum, v, i) => sum + v * forward[i], 0), distance * .2);
@@ -125,11 +125,11 @@ export class Overlay {
     if (by || factor) event.preventDefault();
   }
 
-  // At the depth of what the camera looks at.
+  // At the depth of the point of interest.
   updateRuler() {
     const mm = this.state.scene.mm_per_unit || 1, {distance} = basis(this.state.camera);
     const height = heightAt(this.state.camera, distance) * mm * this.state.film.shownHeight;
-    if (!(height > 0)) return;  // a value that will be refused
+    if (!(height > 0)) return;  // an invalid value, to be refused
     const size = niceLength(height * .3), pixels = size / height * this.size.height;
     const y = this.size.height - 14;
     const bar = svg("path", {class: "rule", d: `M14 ${y - 5}V${y}H${14 + pixels}V${y - 5}`});

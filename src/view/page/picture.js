@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frames on a canvas: exposure, view transform and channels are this page's own, and so at once.
+// Frames on a canvas. Exposure, view transform and channel selection are local to the page, without delay.
 
 const kSteps = ["moving", "sharper", "final", "reference"];
-const kMark = 0x314c504f, kHeader = 32;  // as src/view/view_frame.h has them
+const kMark = 0x314c504f, kHeader = 32;  // as in src/view/view_frame.h
 
 function floatOfHalf(bits) {
   const sign = bits & 0x8000 ? -1 : 1, exponent = bits >> 10 & 31, fraction = bits & 1023;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The trade of this scene: error against time, a point for each setting, to be taken by a click.
+// Error against time of this scene's settings, one selectable point each.
 
 const kWidth = 340, kHeight = 190, kLeft = 44, kRight = 12, kTop = 12, kBottom = 30;
 
@@ -23,7 +23,7 @@ function ticksOf(low, high) {
   return within.length <= 7 ? within : within.filter((x) => Number.isInteger(Math.round(1e6 * Math.log10(x)) / 1e6));
 }
 
-// Logarithmic, with some room at its ends. from, to: where the ends are drawn.
+// Logarithmic axis with a margin. from, to: pixels of the ends.
 function axisOf(values, from, to) {
   const low = Math.min(...values) / 1.3, high = Math.max(...values) * 1.3;
   const at = (x) => from + (to - from) * Math.log(x / low) / Math.log(high / low);
@@ -33,13 +33,13 @@ function axisOf(values, from, to) {
 export const nameOf = (point) => point.method === "lambert" ? "lambert"
   : `${point.samples.toLocaleString("en")} samples, tolerance ${point.values["settings.tolerance"]}`;
 
-// A setting that costs more than another one and is further off is no choice: near light is dear where samples are few.
-// Times are noisy: what is within a twentieth is taken for as good.
+// Dominated settings, slower and less accurate than another, are not offered. Times are noisy: differences
+// below a twentieth are ignored.
 const isNoChoice = (point, points) =>
   points.some((other) => 1.05 * other.seconds < point.seconds && 1.05 * other.error < point.error);
 
 export class Trade {
-  // root: takes the chart; take(point): a person chose it
+  // root: receives the chart; take(point): called for a chosen point
   constructor(root, take) {
     Object.assign(this, {root, take});
   }

@@ -13,19 +13,19 @@
 namespace opaline {
 namespace {
 
-// Points beside creases at which the error is worked out.
+// Points beside creases with an error estimate.
 constexpr std::size_t kTrials = 32;
-// Faces whose normals have a cosine below this, and above its negative, meet in a crease; normals with one
-// above kSameFace belong to the same face.
+// Cosines of normals: below kCrease, and above its negative, of faces meeting in a crease; above kSameFace,
+// of one face.
 constexpr float kCrease = 0.7f, kSameFace = 0.9f;
-// Mean cosine between a normal and those of its own face, from which on the face is flat.
+// Least mean cosine between a normal and those of its face for the face to be flat.
 constexpr double kFlat = 0.97;
-// A face of which this part or more lies on either side of the plane of another crosses it.
+// Least fraction of a face on each side of another face's plane for the two to cross.
 constexpr double kCrossing = 0.2;
-// A wall that has this part of an endless one is endless: the rest is the noise of its few samples, and what
-// is left of an even light is a small difference.
+// Least fraction of an infinite wall for a wall to count as infinite. The difference is noise of few samples,
+// and would leave a small spurious error under uniform light.
 constexpr double kWhole = 0.8;
-// Darker than this part of the brightest trial, errors are absolute. A relative error above kMost counts as
+// Fraction of the brightest trial's exitance below which errors are absolute. Relative errors are limited to
 // kMost.
 constexpr float kDark = 1e-3f;
 constexpr double kMost = 2;
@@ -48,13 +48,13 @@ std::vector<std::uint32_t> samples_within(const Octree& tree, std::uint32_t samp
   return near;
 }
 
-/// The cosine at which the eye sees a sample, or 0 where it sees the other side: as many pixels show it.
+/// Cosine between a sample's normal and the camera direction, proportional to its pixels; 0 for back faces.
 double facing(const Octree& tree, std::uint32_t sample, const Vec3f& eye) {
   const Vec3f towards = eye - position_of(tree.samples[sample]);
   return double(std::max(0.0f, dot(tree.normals[sample], towards) / length(towards)));
 }
 
-/// Samples of the leaves through which a crease runs.
+/// Samples of the leaves crossed by a crease.
 std::vector<std::uint32_t> samples_at_creases(const Octree& tree) {
   std::vector<std::uint32_t> found;
   for (const OctreeNode& node : tree.nodes) {
@@ -67,14 +67,14 @@ std::vector<std::uint32_t> samples_at_creases(const Octree& tree) {
   return found;
 }
 
-/// A sample within h of a crease, and how many of all samples it stands for.
+/// A sample within h of a crease, with the number of samples it represents.
 struct Trial {
   std::uint32_t sample;
   double weight;
 };
 
-// A neighbour of a sample at a crease, drawn at random, is drawn as often as there are such samples around
-// it.
+// Samples a neighbour of a sample at a crease. Its probability is proportional to the number of such samples
+// around it, so the weight divides by that number.
 std::vector<Trial> draw_trials(const Octree& tree, float radius) {
   const std::vector<std::uint32_t> creased = samples_at_creases(tree);
   std::vector<bool> is_creased(tree.samples.size());
@@ -103,8 +103,8 @@ struct Face {
   double area = 0;
 };
 
-// Where two bodies of a group cross, each has a part inside the other, which nobody sees: none of a point on
-// such a part, and for a point outside those above its plane.
+// Removes hidden parts. Where two bodies cross, each has a part inside the other: nothing on it is visible,
+// and a point outside does not see faces above its own plane.
 std::vector<Face> visible_faces(std::vector<Face> faces) {
   std::vector<Face> visible;
   for (const Face& f : faces) {
@@ -119,7 +119,7 @@ std::vector<Face> visible_faces(std::vector<Face> faces) {
   return visible;
 }
 
-// None where the point's own face is not flat: a curved surface is no crease.
+// Returns nothing if the point's own face is not flat: a curved surface is not a crease.
 std::vector<Face> other_faces(const Octree& tree, std::uint32_t sample, float radius) {
   std::vector<Face> faces;
   const Vec3f p = position_of(tree.samples[sample]);
@@ -149,7 +149,7 @@ std::vector<Face> other_faces(const Octree& tree, std::uint32_t sample, float ra
   return visible_faces(std::move(faces));
 }
 
-/// Visible fraction of a perpendicular half plane that is as long as the near field.
+/// Fraction of a perpendicular half plane, cut at the near field's radius, covered by a face.
 double part_there(const Face& face, double radius) {
   const double t = std::min(1.0, face.distance / radius), rest = 1 - t * t;
   const double whole = std::numbers::pi * radius * radius / 6 * rest * rest * rest;
@@ -157,8 +157,8 @@ double part_there(const Face& face, double radius) {
   return face.weight > kWhole * whole ? 1 : face.weight / whole;
 }
 
-/// Light of a near field: the fraction of the plane on the point's own face, and transmitted light through
-/// others, in flux units, times their shares.
+/// Contributions to a near field: fraction of the plane on the point's own face, and the weighted transmitted
+/// irradiance of other faces, flux units.
 struct NearLight {
   std::array<double, 3> plane{1, 1, 1}, walls{};
 };
@@ -181,7 +181,7 @@ struct TrialError {
   double error = 0, truth = 0;  // exitance: error, and exact value
 };
 
-// e: as evaluated with the point's own irradiance.
+// e: evaluated with the point's own irradiance.
 TrialError error_of(const SplitKernel& kernel, const NearLight& light, const Exitance& e,
                     const RgbF& irradiance, double flux_unit, std::size_t c) {
   const double own = double(irradiance[c]), share = double(kernel.own_irradiance[c]),

@@ -13,8 +13,7 @@ namespace opaline {
 namespace {
 
 constexpr int kLines = 8;  // along a side of a cell
-// Side of the part of its square in which a line stands at random. The whole square leaves more noise beside
-// edges (p99 2.12 % in place of 1.96 % on the bunny's thigh), none is bad for edges along an axis.
+// Width of the random offset of a line, over its grid square; src/exitance/README.md has the comparison.
 constexpr float kFreedom = 0.5f;
 
 std::size_t largest_axis(const Vec3d& v) {
@@ -30,7 +29,7 @@ std::size_t bytes_of(const IrradianceLattice::Cell& cell) {
 
 }  // namespace
 
-// Crossings of a cell during the search for its points.
+// Intersections of a cell's lines with the surface.
 struct IrradianceLattice::Crossings {
   Crossings(const Key& key, const Vec3d& low_, double step_, std::uint64_t seed_, Cell& cell_)
       : low(low_), step(step_), seed(hash_bits(seed_, key.level)), cell(cell_) {
@@ -55,7 +54,7 @@ struct IrradianceLattice::Crossings {
   double step;
   std::uint64_t seed;  // seed of the cell
   Cell& cell;
-  std::array<std::array<std::array<float, 2>, kLines * kLines>, 3> shifts;  // lines in their squares
+  std::array<std::array<std::array<float, 2>, kLines * kLines>, 3> shifts;  // line offsets
 };
 
 IrradianceLattice::IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta,
@@ -153,7 +152,7 @@ const IrradianceLattice::Cell& IrradianceLattice::cell(const Key& key, const Poi
   return known->second;
 }
 
-// By rays to those lights alone of which nothing is held.
+// Traces shadow rays only to lights without cached results.
 void IrradianceLattice::light(Cell& cell, const PointIrradianceInput& lighting) const {
   cell.picture = picture_;
   if (cell.points.empty()) return;
@@ -189,7 +188,7 @@ IrradianceLattice::Cell IrradianceLattice::make_cell(const Key& key,
   return cell;
 }
 
-// Where the lines of the axis nearest to its normal cross a triangle within the cell.
+// Intersects a triangle with the lines along the axis nearest to its normal, within the cell.
 void IrradianceLattice::add_crossings(const RayScene& rays, const LineQuery::Triangle& triangle,
                                       Crossings& crossings) const {
   const double step = crossings.step, per_step = 1 / step;

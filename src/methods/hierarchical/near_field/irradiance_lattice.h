@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Irradiance at places spread evenly over a surface, found cell by cell where somebody asks for it.
+// Irradiance at points spread evenly over a surface, computed cell by cell on demand.
 #pragma once
 
 #include <array>
@@ -16,38 +16,38 @@
 
 namespace opaline {
 
-/// The places are where lines parallel to the axes cross the surface, one line in each square of a grid.
-/// Every triangle is crossed by the lines of the axis nearest to its normal n alone, so a place stands for
-/// spacing^2 / |n_axis| of the surface, wherever it lies and whoever sees it. All threads share the cells;
-/// what is in one depends on nothing but its key and the scene. One that holds what each light sends to its places
-/// serves picture after picture: in other colours no ray is traced.
+/// Points of a surface on a lattice: intersections with lines parallel to the axes, one line per square of a
+/// grid. A triangle is intersected by the lines along the axis nearest to its normal n only, so each point
+/// represents an area of spacing^2 / |n_axis|, independent of the view. All threads share the cells; a cell's
+/// content depends on its key and the scene alone. With the transfer of each light cached, later images with
+/// other light colours trace no rays.
 class IrradianceLattice {
  public:
   struct Key {
     std::array<std::int64_t, 3> corner;  ///< in cells
-    std::uint32_t level;                 ///< each halves the spacing's square
+    std::uint32_t level;                 ///< each level halves the spacing's square
     friend bool operator==(const Key&, const Key&) = default;
   };
   struct Cell {
     Vec3f low, high;  ///< corners of the box around the points
     std::vector<SurfacePoint> points;
-    std::vector<float> areas;                 ///< that each point stands for, mm^2
-    std::vector<RgbF> entered;                ///< by all lights
-    std::vector<PointTransfers> lights = {};  ///< one a light, where they are held
+    std::vector<float> areas;                 ///< area represented by each point, mm^2
+    std::vector<RgbF> entered;                ///< transmitted irradiance of all lights
+    std::vector<PointTransfers> lights = {};  ///< one per light, if cached
     std::uint64_t seed = 0, picture = 0;      ///< seeds of the points' keys; image of `entered`
   };
 
-  /// in    spacing: of the lines of level 0, mm; eta: of the boundary, as PointIrradianceInput's; light_samples: shadow rays from a place to each light with an area;
-  ///       holds_lights: for more than one picture
+  /// in    spacing: of the lines of level 0, mm; eta: of the boundary, as PointIrradianceInput's;
+  ///       light_samples: shadow rays per point and light with an area; holds_lights: caches the transfer of
+  ///       each light for later images
   IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta, int light_samples,
                     bool holds_lights);
 
-  /// True if a new one with these would be the same.
+  /// True if these inputs would make the same lattice.
   bool is_of(const std::vector<bool>& is_own_mesh, double spacing, double eta, int light_samples) const;
-  /// To be called between pictures of other lights, as HeldView::set_lights.
+  /// Matches the cached lights to those of a new image, as HeldView::set_lights.
   void set_lights(std::span<const std::optional<std::size_t>> before);
-  /// To be called between pictures: cells are in the colours of the first one's lights otherwise. Lets go of all of
-  /// them where they take more than kMostBytes.
+  /// Begins an image with other light colours. Drops all cells if they exceed kMostBytes.
   void next_picture();
   static constexpr std::size_t kMostBytes = std::size_t(64) << 20;
 
@@ -55,7 +55,7 @@ class IrradianceLattice {
   /// Keys of the cells within reach, mm, of any of some points.
   std::vector<Key> keys_near(std::span<const SurfacePoint> points, std::span<const std::uint32_t> chosen,
                              double reach, std::uint32_t level) const;
-  /// in    lighting: its points, boundary and number of rays are not looked at; the same at each call but for them
+  /// in    lighting: its points, boundary and number of rays are ignored; otherwise equal at each call
   const Cell& cell(const Key& key, const PointIrradianceInput& lighting);
 
  private:

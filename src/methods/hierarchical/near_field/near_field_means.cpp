@@ -8,10 +8,8 @@
 namespace opaline {
 namespace {
 
-// Places at a grazing angle to a point are rarely drawn and then count the more. Their cosine counts as this
-// at least, or a few of them would decide the mean. Measured on the rim of the bunny's ear at 2048 x 2048
-// with drawn places only, against a finer lattice: largest error 13.6 % with the density of the straight
-// distance and no cosine, 8.9 % with .05, 8.6 % with .1 to .35, 9.3 % with .5.
+// Least cosine of a sampled point's normal. Points at grazing angles are rarely sampled and have large
+// weights: without a bound, a few of them dominate the mean. src/exitance/README.md has the comparison.
 constexpr float kGrazing = 0.2f;
 
 }  // namespace
@@ -30,9 +28,9 @@ NearFieldMeans::NearFieldMeans(const NearKernel& kernel, std::span<const Surface
   }
 }
 
-// The kernels of all points at a place, which are 0 where it faces away from the point, and how densely each
-// point draws places there. The kernel depends on the straight distance. A point draws a distance in its
-// tangent plane and finds the place along its normal: the steeper the surface, the farther apart the places.
+// Evaluates the kernels of all points at a surface point, 0 for back faces, and their sampling densities
+// there. The kernel depends on the straight distance. Sampling picks a distance in the tangent plane and
+// projects along the normal, so the density falls with the cosine.
 void NearFieldMeans::find_densities(const SurfacePoint& place) {
   constexpr float kOutside = NearKernel::kRings;
   const float rings = kOutside / kernel_.radius;
@@ -42,7 +40,7 @@ void NearFieldMeans::find_densities(const SurfacePoint& place) {
     const float dx = x_[m] - px, dy = y_[m] - py, dz = z_[m] - pz;
     const float square = dx * dx + dy * dy + dz * dz, height = dx * nx_[m] + dy * ny_[m] + dz * nz_[m];
     const float flat = square - height * height, cosine = nx_[m] * gx + ny_[m] * gy + nz_[m] * gz;
-    // Without a branch, so compilers take several points at once.
+    // Without a branch, so the compiler vectorizes the loop.
     const float r = std::sqrt(square) * rings, within = r < kOutside ? r : kOutside;
     const float drawn = std::sqrt(flat > 0 ? flat : 0) * rings,
                 drawn_within = drawn < kOutside ? drawn : kOutside;
@@ -56,7 +54,7 @@ void NearFieldMeans::find_densities(const SurfacePoint& place) {
 void NearFieldMeans::add_drawn(std::span<const SurfacePoint> places, std::span<const RgbF> entered) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     find_densities(places[i]);
-    float expected = 0;  // places per mm^2 here
+    float expected = 0;  // expected samples per mm^2
     for (std::size_t m = 0; m < end_; ++m)
       expected += kernel_.densities[std::size_t(drawn_ring_[m])][3] * found_[m];
     if (!(expected > 0)) continue;
@@ -82,7 +80,7 @@ void NearFieldMeans::add_lattice(std::span<const IrradianceLattice::Cell* const>
   }
 }
 
-// Copies the places of a cell that are within reach of a box.
+// Copies the points of a cell within reach of a box.
 void NearFieldMeans::take_close(const IrradianceLattice::Cell& cell, const Box& box) {
   const float square = kernel_.reach * kernel_.reach;
   const auto gap = [&box](const Vec3f& low, const Vec3f& high) {
@@ -111,7 +109,7 @@ void NearFieldMeans::take_close(const IrradianceLattice::Cell& cell, const Box& 
   close_entered_.resize(n);
 }
 
-// Adds the places close to its group to what one point sees.
+// Adds the copied points to one point's mean.
 void NearFieldMeans::add_close(std::size_t point) {
   constexpr float kOutside = NearKernel::kRings;
   const float rings = kOutside / kernel_.radius;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Means of irradiance at places, weighted by the near kernels of many points at once.
+// Irradiance averaged with the near kernels of many points at once.
 #pragma once
 
 #include <array>
@@ -12,29 +12,29 @@
 
 namespace opaline {
 
-/// The mean irradiance around each point of a set.
+/// Mean irradiance around each point of a set.
 class NearFieldMeans {
  public:
   static constexpr std::size_t kMostPoints = 64;
-  static constexpr std::size_t kGroup = 16;  ///< points that look for places together
+  static constexpr std::size_t kGroup = 16;  ///< points sharing one search
 
-  /// in    chosen: at most kMostPoints of the points, best such that every kGroup of them lie together;
-  ///       drawn: how many places each of them drew from its own kernel
+  /// in    chosen: at most kMostPoints indices, best with each kGroup of them close together;
+  ///       drawn: number of points sampled from each one's kernel
   NearFieldMeans(const NearKernel& kernel, std::span<const SurfacePoint> points,
                  std::span<const std::uint32_t> chosen, std::span<const int> drawn);
 
-  /// Adds places that the points drew: each counts as drawn from all of their kernels together.
+  /// Adds sampled points; each counts as sampled from the mixture of all kernels.
   /// from  balance heuristic: Veach & Guibas 1995, sec. 3
-  /// in    entered: irradiance at the places
+  /// in    entered: transmitted irradiance at the points
   void add_drawn(std::span<const SurfacePoint> places, std::span<const RgbF> entered);
-  /// Adds the places of cells; none beyond the kernel's reach need be among them. Call it once.
+  /// Adds the points of lattice cells, which may omit those beyond the kernel's reach. Call once.
   void add_lattice(std::span<const IrradianceLattice::Cell* const> cells);
 
-  /// Mean at a point of the set; NaN if no place is near.
+  /// Mean at a point of the set; NaN without any point nearby.
   RgbF mean(std::size_t point) const;
 
  private:
-  // Points past the last have no normal: they see no place.
+  // Padding has zero normals, and sees no point.
   static constexpr std::size_t kAtOnce = 4;
   static_assert(kMostPoints % kGroup == 0 && kGroup % kAtOnce == 0);
   using Densities = NearKernel::Densities;
@@ -50,11 +50,11 @@ class NearFieldMeans {
   std::size_t count_, end_;
   std::array<Box, kMostPoints / kGroup> boxes_;  // boxes of every kGroup points
   Numbers x_{}, y_{}, z_{}, nx_{}, ny_{}, nz_{}, drawn_{};
-  std::array<int, kMostPoints> ring_{}, drawn_ring_{};  // rings of the current place
-  Numbers found_{};  // the places that each point drew, times its cosine with the place last looked at
-  std::array<Densities, kMostPoints> here_{};  // densities of the current place
+  std::array<int, kMostPoints> ring_{}, drawn_ring_{};  // rings of the current point
+  Numbers found_{};  // number of samples of each point, times its cosine with the current one
+  std::array<Densities, kMostPoints> here_{};  // densities at the current point
   std::array<Densities, kMostPoints> weights_{}, sums_{};
-  // Places close to a group, coordinate by coordinate; what each stands for, and its irradiance.
+  // Points close to a group, by coordinate, with their areas and irradiance.
   std::array<std::vector<float>, 6> close_coordinates_;
   std::vector<Densities> close_areas_, close_entered_;
   std::vector<int> close_rings_;

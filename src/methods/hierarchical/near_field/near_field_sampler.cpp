@@ -15,32 +15,33 @@
 namespace opaline {
 namespace {
 
-// The fraction of the exitance that is usually at stake where shadow rays are worth their time; and the least
-// there: of points far apart, close together, and so close that they share their rays with many others.
+// Stakes: typical, and least for shadow rays to pay off: of sparse points, dense points, and points so dense
+// that many share their rays. (Stake: fraction of the exitance depending on the near field's irradiance,
+// stake_of.)
 constexpr float kUsual = 0.06f, kWorthApart = kRefinedStake, kWorthClose = 0.015f, kWorthShared = 0.005f;
-constexpr float kFinestAt = 0.1f;  // stake from which on the lattice is as fine as the points allow
-// Where as much is at stake as usual: places of a point alone; of neighbours together, which fill the near
-// field of each less evenly; and how many each of many neighbours brings at least.
+constexpr float kFinestAt = 0.1f;  // stake requiring the finest lattice
+// Samples at a typical stake: of an isolated point; of neighbours together, which cover each near field less
+// evenly; least of each.
 constexpr int kAlone = 24, kTogether = 96, kEach = 3;
-constexpr std::uint64_t kStride = 11;  // in the sequence from one point's places to the next one's
-constexpr int kFewerRays = 16;      // than a point's own are traced from a place to each light with an area
-constexpr float kErrorLeft = 0.4f;  // fraction of the interpolation error that remains
+constexpr std::uint64_t kStride = 11;  // offset between the sequences of successive points
+constexpr int kFewerRays = 16;      // shadow rays per light with an area at a point, over those at a sample
+constexpr float kErrorLeft = 0.4f;  // remaining fraction of the interpolation error
 
-// In units of the distance within which half of the narrowest channel's kernel lies: spacing of the lattice
-// at its coarsest; distance of points that use the lattice; of points that are many more than its cells; and
-// the kernel's reach: one that goes farther has a core too narrow for the lattice.
+// In units of the narrowest channel's half-mass distance: coarsest lattice spacing; spacing of points below
+// which they use the lattice, and below which they far outnumber its points; kernel's reach, above which its
+// core is too narrow for the lattice.
 constexpr double kCoarsest = 0.45, kClose = 0.85, kFineGrained = 0.33;
 constexpr float kFarthest = 12;
-constexpr double kPerPoint = 1;  // spacing of the lattice over that of the points, at its finest
+constexpr double kPerPoint = 1;  // finest lattice spacing, over that of the points
 constexpr std::uint32_t kFinest = 4;
-constexpr std::size_t kDense = 32;  // points of a batch that must be marked to share the cost of cells
-// Variance of a mean over the lattice where a shadow's edge leaves a share f of the kernel in the light, over
-// f (1 - f) and the cube of spacing / half distance: (4 / pi) (1 / 6) / .25 times the integral of the squared
-// kernel along the edge, sqrt(pi / 2) / pi^2 for a Gaussian of rms distance 1. Each square that the edge
-// crosses adds 1/6 of the square of its weight.
+constexpr std::size_t kDense = 32;  // least refined points of a batch for cells to pay off
+// Variance of a mean over the lattice beside a shadow edge with the lit fraction f, over f (1 - f) (spacing /
+// half-mass distance)^3. It is (4 / pi) (1 / 6) / 0.25 times the integral of the squared kernel along the
+// edge, sqrt(pi / 2) / pi^2 for a Gaussian of unit rms distance. Each square on the edge adds 1/6 of the
+// square of its weight.
 constexpr float kLatticeVariance = 0.063f;
 
-// Between points following each other: the median, mm.
+// Median distance of successive points, mm.
 double typical_distance(std::span<const SurfacePoint> points) {
   if (points.size() < 2) return std::numeric_limits<double>::infinity();
   std::vector<float> distances;
@@ -52,14 +53,14 @@ double typical_distance(std::span<const SurfacePoint> points) {
   return double(*middle);
 }
 
-// Alike all over a near field.
+// Bounced irradiance, constant over a near field.
 RgbF bounced_at(const PointIrradianceInput& lighting, std::size_t point) {
   return lighting.bounced.empty() ? RgbF{} : lighting.bounced[point];
 }
 
 }  // namespace
 
-// Input of refine, and its result.
+// Inputs and results of refine.
 struct NearFieldSampler::Found {
   const PointIrradianceInput& lighting;
   std::span<const RgbF> own;
@@ -67,12 +68,12 @@ struct NearFieldSampler::Found {
   std::span<Rgb> noise;
 };
 
-// Places of all marked points together, on the surface once found.
+// Sampled points of all refined points, on the surface after find.
 struct NearFieldSampler::Places {
   std::vector<TracedRay> rays;
   std::vector<SurfacePoint> points;
   std::vector<std::uint64_t> keys;
-  std::vector<std::uint32_t> sets;  // sets of the points that requested them
+  std::vector<std::uint32_t> sets;  // set of each one
 };
 
 NearFieldSampler::NearFieldSampler(const Body& group, int light_samples,
@@ -112,7 +113,7 @@ std::vector<std::uint32_t> NearFieldSampler::refine(const PointIrradianceInput& 
   return marked;
 }
 
-// The places of a lattice that all share.
+// Averages over the shared lattice.
 void NearFieldSampler::look_up(const Found& found, std::span<std::uint32_t> sorted,
                                std::span<const std::size_t> ends, std::uint32_t finest) const {
   const std::span<const SurfacePoint> points = found.lighting.points;
@@ -134,7 +135,7 @@ void NearFieldSampler::look_up(const Found& found, std::span<std::uint32_t> sort
   }
 }
 
-// Places that points draw themselves and share with the others of their set.
+// Averages over sampled points, shared within a set.
 void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_t> sorted,
                                 std::span<const std::size_t> ends) const {
   const PointIrradianceInput& lighting = found.lighting;
@@ -142,8 +143,8 @@ void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_
   std::vector<int> drawn;
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
     for (std::size_t m = first; m < ends[set]; ++m) {
-      // A part p of the near field beyond an edge contributes an error of about p, and the deviation of
-      // a place is as the root of p.
+      // A fraction p of the near field beyond an edge causes an error of about p, and a sample's deviation is
+      // about the root of p.
       const std::uint32_t i = sorted[m];
       const float wanted = std::sqrt(at_stake(found.own[i], found.exitance[i]) / kUsual) *
                            places_of(i, sorted.subspan(first, ends[set] - first), lighting.points);
@@ -170,7 +171,7 @@ void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_
   }
 }
 
-// variance: of the fraction of the places that an edge leaves in the light, over share x (1 - share)
+// variance: of the lit fraction f beside a shadow edge, over f (1 - f)
 void NearFieldSampler::replace_all(const Found& found, std::span<const std::uint32_t> points,
                                    const NearFieldMeans& means, const RgbF& variance) const {
   for (std::size_t m = 0; m < points.size(); ++m) {
@@ -180,8 +181,7 @@ void NearFieldSampler::replace_all(const Found& found, std::span<const std::uint
   }
 }
 
-// How fine the lattice may be for points so far apart, mm, of which some are marked; none where they had
-// better have places of their own.
+// Finest lattice level at this spacing of the points, mm; none if sampling is cheaper.
 std::optional<std::uint32_t> NearFieldSampler::finest_level(double apart, std::size_t marked) const {
   if (marked < kDense || !(apart <= kClose * double(near_.narrowest)) ||
       near_.reach > kFarthest * near_.narrowest)
@@ -191,9 +191,8 @@ std::optional<std::uint32_t> NearFieldSampler::finest_level(double apart, std::s
   return level;
 }
 
-// The deviation of a mean over the lattice is about as its spacing to the power of 3/2: levels for a set are
-// so much coarser than the finest that the error of the exitance is the same wherever less is at stake than
-// kFinestAt.
+// Lattice level of a set. The deviation of a mean falls with the power 3/2 of the spacing, so sets with a
+// stake below kFinestAt use coarser levels at equal error.
 std::uint32_t NearFieldSampler::level_of(const Found& found, std::span<const std::uint32_t> set,
                                          std::uint32_t finest) const {
   float most = std::numeric_limits<float>::min();
@@ -202,8 +201,8 @@ std::uint32_t NearFieldSampler::level_of(const Found& found, std::span<const std
   return finest - std::min(finest, std::uint32_t(coarser));
 }
 
-// Puts the near field's mean irradiance, NaN where it is not known, where `evaluate` took a mixture. noise:
-// the variance of a mean of places of which some have all the light there is, and others none.
+// Replaces the mixed irradiance of a near field by its mean; NaN: unknown. noise: variance of the mean, for
+// points either fully lit or in shadow.
 void NearFieldSampler::replace_mixed(const RgbF& own, const RgbF& mean, const RgbF& variance, Exitance& e,
                                      Rgb& noise) const {
   for (std::size_t c = 0; c < 3; ++c) {
@@ -239,14 +238,14 @@ std::vector<std::size_t> NearFieldSampler::split(std::span<const SurfacePoint> p
   return ends;
 }
 
-// Sorts a set so that every NearFieldMeans::kGroup points following each other lie together.
+// Sorts a set into groups of kGroup neighbours.
 void NearFieldSampler::sort_into_groups(std::span<const SurfacePoint> points, std::span<std::uint32_t> set) {
   for (std::size_t size = NearFieldMeans::kMostPoints / 2; size >= NearFieldMeans::kGroup; size /= 2)
     for (std::size_t first = 0; first + size < set.size(); first += 2 * size)
       part(points, set.subspan(first, std::min(2 * size, set.size() - first)), size);
 }
 
-// Puts so many of the points before the others that both lie apart.
+// Splits the points in space, `count` of them first.
 void NearFieldSampler::part(std::span<const SurfacePoint> points, std::span<std::uint32_t> marked,
                             std::size_t count) {
   Vec3f low = points[marked[0]].position, high = low;
@@ -257,7 +256,7 @@ void NearFieldSampler::part(std::span<const SurfacePoint> points, std::span<std:
   std::ranges::nth_element(marked, marked.begin() + std::ptrdiff_t(count), {}, along);
 }
 
-// Number of places of a point: about kTogether with those of its neighbours, at most kAlone of its own.
+// Samples of a point: about kTogether among its neighbours, at most kAlone of its own.
 float NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint32_t> set,
                                   std::span<const SurfacePoint> points) const {
   const float square = float(near_.root_mean_square * near_.root_mean_square);
@@ -269,8 +268,8 @@ float NearFieldSampler::places_of(std::uint32_t point, std::span<const std::uint
   return float(std::clamp(kTogether / std::max(1, neighbours), kEach, kAlone));
 }
 
-// All points together take their places from one low-discrepancy sequence, each from where its number in the
-// batch says: not from where another's end, or all would change from frame to frame where one comes or goes.
+// All points use one low-discrepancy sequence, each from an index given by its number in the batch, so adding
+// or removing a point changes no other between frames.
 void NearFieldSampler::draw(const PointIrradianceInput& lighting, std::uint32_t number, int count,
                             Places& places) const {
   const SurfacePoint& point = lighting.points[number];
@@ -289,7 +288,7 @@ void NearFieldSampler::draw(const PointIrradianceInput& lighting, std::uint32_t 
   }
 }
 
-// Keeps the places lying on the group's surface and show their outside.
+// Removes samples off the body's surface or on back faces.
 void NearFieldSampler::find(const RayScene& rays, Places& places) const {
   rays.intersect(places.rays);
   places.points.reserve(places.rays.size());

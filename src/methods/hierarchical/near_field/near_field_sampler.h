@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The irradiance of the near field beside shadow edges.
+// Irradiance of the near field beside shadow edges.
 #pragma once
 
 #include <cstdint>
@@ -16,28 +16,26 @@
 
 namespace opaline {
 
-/// Irradiance around points, weighted by the near kernel R_d (1 - w). evaluate gives the near field one
-/// irradiance, that of the point mixed with the samples' mean (SplitKernel::own_irradiance); where the two
-/// differ, a shadow edge runs through the near field and neither is what enters it. Shadow rays from places
-/// in it tell. Where many points lie close together, as pixels do, the places are those of a lattice that all
-/// of them share (IrradianceLattice), the finer the more hangs on it: an edge leaves an error of the spacing
-/// to the power of 3/2. Elsewhere points draw places from their own kernels. Neighbours share these: each
-/// counts as drawn from the mean of the points' own kernels. Points bring as many as goes with the deviation
-/// that is to be expected.
+/// Mean irradiance around points, weighted by the near kernel R_d (1 - w). By default the near field has one
+/// irradiance, a mixture of the point's own and the samples' mean (SplitKernel::own_irradiance). If the two
+/// differ, a shadow edge crosses the near field and the mixture is wrong, so shadow rays from points of the
+/// near field replace it. Dense points, such as pixels, share a lattice (IrradianceLattice), finer at higher
+/// stakes: its error beside an edge is of order 3/2 in the spacing. Sparse points sample their kernels, in
+/// numbers proportional to the expected deviation, and share the samples with neighbours.
 /// from  balance heuristic: Veach & Guibas 1995, sec. 3; allocation: Neyman 1934; stratified sampling of
 ///       edges: Mitchell 1996
 class NearFieldSampler {
  public:
-  /// in    group: not without meshes; it must outlive the sampler. light_samples: from a point to each light with an
-  /// area, the most that refine is given. held: where it is the one that the group needs, of earlier
-  /// pictures; else replaced by one for this and later ones. Null: none is kept
+  /// in    group: has meshes; must outlive the sampler. light_samples: shadow rays from a point to each light
+  ///       with an area, the maximum for refine. held: lattice of earlier images, reused if it fits,
+  ///       otherwise replaced; null: none is cached
   explicit NearFieldSampler(const Body& group, int light_samples,
                             std::shared_ptr<IrradianceLattice>* held = nullptr);
 
-  /// Corrects the exitance of the points beside shadow edges.
+  /// Corrects the exitance of points beside shadow edges; returns their indices.
   /// in    lighting: of the points; own: their irradiance
-  /// out   exitance: as evaluated with it, one a point; noise: its variance, one a point, replaced at those
-  ///       beside shadow edges; returns which points these were
+  /// out   exitance: evaluated with `own`, one per point; noise: its variance, one per point; both replaced
+  ///       at the returned points
   std::vector<std::uint32_t> refine(const PointIrradianceInput& lighting, std::span<const RgbF> own,
                                     std::span<Exitance> exitance, std::span<Rgb> noise) const;
 

@@ -6,10 +6,10 @@
 namespace opaline {
 namespace {
 
-// Points that follow each other and are alike but for their noise.
+// Successive points with equal expected exitance, assumed to differ by noise only.
 constexpr std::size_t kWindow = 16;
 
-/// Window of one channel of the points of a window.
+/// Sums over one channel of a window.
 struct Window {
   double refined = 0, change = 0, refined_change = 0, square = 0, noise = 0, count = 0;
 
@@ -21,7 +21,7 @@ struct Window {
     if (is_refined) refined += 1, refined_change += d;
   }
 
-  /// Minus the covariance of being refined and of the change that this takes back, as far as noise made it.
+  /// Minus the covariance of the selection and the change it replaces, the part due to noise.
   double bias() const {
     const double mean = change / count, spread = square / count - mean * mean;
     if (!(spread > 0) || refined == 0) return 0;
