@@ -39,14 +39,6 @@ void visit_batches(HeldView& view, const Visit& visit) {
 
 }  // namespace
 
-void set_held_lights(std::vector<PointTransfers>& lights,
-                     std::span<const std::optional<std::size_t>> before) {
-  std::vector<PointTransfers> now(before.size());
-  for (std::size_t l = 0; l < before.size(); ++l)
-    if (before[l] && *before[l] < lights.size()) now[l] = std::move(lights[*before[l]]);
-  lights = std::move(now);
-}
-
 void HeldView::forget_camera() {
   for (std::vector<Batch>& tile : tiles)
     for (Batch& batch : tile) {  // memory stays for what the next camera sees

@@ -138,7 +138,4 @@ struct HeldView {
   void next_picture();
 };
 
-/// HeldView::set_lights for one set of points.
-void set_held_lights(std::vector<PointTransfers>& lights, std::span<const std::optional<std::size_t>> before);
-
 }  // namespace opaline

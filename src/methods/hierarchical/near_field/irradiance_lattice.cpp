@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "opaline/core/random.h"
-#include "opaline/render/held_view.h"
 
 namespace opaline {
 namespace {
@@ -29,6 +28,14 @@ std::size_t bytes_of(const IrradianceLattice::Cell& cell) {
 }
 
 }  // namespace
+
+void set_held_lights(std::vector<PointTransfers>& lights,
+                     std::span<const std::optional<std::size_t>> before) {
+  std::vector<PointTransfers> now(before.size());
+  for (std::size_t l = 0; l < before.size(); ++l)
+    if (before[l] && *before[l] < lights.size()) now[l] = std::move(lights[*before[l]]);
+  lights = std::move(now);
+}
 
 // Crossings of a cell during the search for its points.
 struct IrradianceLattice::Crossings {

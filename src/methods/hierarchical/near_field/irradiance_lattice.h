@@ -16,6 +16,10 @@
 
 namespace opaline {
 
+/// Reorders what each light sends to some points.
+/// in    before: index of each light in `lights`; none: it must be traced
+void set_held_lights(std::vector<PointTransfers>& lights, std::span<const std::optional<std::size_t>> before);
+
 /// The places are where lines parallel to the axes cross the surface, one line in each square of a grid.
 /// Every triangle is crossed by the lines of the axis nearest to its normal n alone, so a place stands for
 /// spacing^2 / |n_axis| of the surface, wherever it lies and whoever sees it. All threads share the cells;
