@@ -99,12 +99,12 @@ std::vector<SurfacePoint> points_of(std::span<const TracedRay> traced, const Ray
 
 }  // namespace
 
-Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers)
+Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
     : input_(input),
       lights_(recentred_lights(input.scene, input.world)),
       textures_(input.scene, input.world),
       pixel_spread_(camera_ray_spread(input.scene)),
-      fields_(make_fields(input, textures_, entry_samplers)) {
+      fields_(make_fields(input, textures_, sources)) {
   if (input.view != nullptr) {
     std::vector<float> eta;
     for (const std::unique_ptr<Field>& field : fields_.all) eta.push_back(field->eta());

@@ -19,8 +19,8 @@ class BouncedLight;
 
 class Shader {
  public:
-  /// entry_samplers: of Method::direct, one a group.
-  explicit Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers = {});
+  /// sources: fields of meshes without a body; must outlive it
+  explicit Shader(const RenderInput& input, std::span<const FieldSource> sources = {});
 
   /// Shades a batch of traced camera rays, one PixelSample a ray. keys: one a ray, for its light samples.
   /// held: how lights reach what the rays met, added to, or null. Returns the number of exitance queries.
