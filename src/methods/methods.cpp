@@ -7,6 +7,7 @@
 #include "methods/lambert/lambert_method.h"
 #include "methods/volume/volume_method.h"
 #include "methods/volume_diffusion/volume_diffusion_method.h"
+#include "opaline/render/surface_textures.h"
 
 namespace opaline {
 
@@ -19,6 +20,10 @@ const SubsurfaceMethod& method_of(Method method) {
   static const std::array<const SubsurfaceMethod*, kMethodNames.size()> kAll{&hierarchical, &lambert, &direct,
                                                                              &volume, &volume_diffusion};
   return *kAll[std::size_t(method)];
+}
+
+bool follows_textures_inside(Method method) {
+  return method_of(method).follows_textures_inside();
 }
 
 std::vector<RgbF> radiant_exitance(const Body& body, const World& world, std::span<const Vec3d> points,

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/cancel_check.h"
-#include "methods/method.h"
 #include "opaline/core/error.h"
 #include "opaline/core/random.h"
 #include "opaline/image/texture_file.h"
@@ -137,10 +136,6 @@ TangentFrame level_frame(const Vec3f& normal) {
   return {tangent, cross(normal, tangent)};
 }
 
-bool follows_textures_inside(const Scene& scene) {
-  return method_of(scene.settings.method).follows_textures_inside();
-}
-
 const Texture* pointer_to(const std::optional<Texture>& texture) {
   return texture ? &*texture : nullptr;
 }
@@ -148,7 +143,7 @@ const Texture* pointer_to(const std::optional<Texture>& texture) {
 }  // namespace
 
 SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world_(world) {
-  const bool is_followed = follows_textures_inside(scene);
+  const bool is_followed = follows_textures_inside(scene.settings.method);
   for (std::size_t m = 0; m < scene.shapes.size(); ++m) {
     const Shape& shape = scene.shapes[m];
     OfMesh& own = of_mesh_.emplace_back();
@@ -311,7 +306,7 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
     return uses_vertex_colors(scene, scene.shapes[m], world.meshes[m]);
   };
   const bool has_texture =
-      medium.tint_texture && !(has_color_inside(medium) && follows_textures_inside(scene));
+      medium.tint_texture && !(has_color_inside(medium) && follows_textures_inside(scene.settings.method));
   const bool has_tint = medium.tint != Rgb(1) || has_texture || medium.weight_texture ||
                         std::ranges::any_of(meshes, has_colors);
   if (medium.texture_mix == TextureMix::post || !has_tint) return {};

@@ -83,6 +83,9 @@ class SurfaceTextures {
   bool is_empty_ = true;
 };
 
+/// True if textures of a medium vary it inside the body (SubsurfaceMethod::follows_textures_inside).
+bool follows_textures_inside(Method method);  // methods.cpp
+
 /// True if vertex colours multiply the colour of the shape.
 bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh);
 
