@@ -5,8 +5,6 @@
 #include <atomic>
 #include <cctype>
 
-#include "assets/asset_scene.h"
-
 namespace opaline {
 namespace {
 
@@ -53,6 +51,13 @@ void allow_files_outside_assets() {
 
 bool are_files_outside_assets_allowed() {
   return outside_is_allowed;
+}
+
+std::string in_quotes(std::string_view name) {
+  std::string text = "'";
+  constexpr std::size_t most = 60;
+  for (const char c : name.substr(0, most)) text += c >= 0 && c < ' ' ? '?' : c;
+  return text + (name.size() > most ? "...'" : "'");
 }
 
 NamedFile find_named_file(const std::string& name, const std::string& asset, const fs::path& folder) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "opaline/core/error.h"
 
@@ -19,6 +20,10 @@ struct OutsideAsset : Error {
   using Error::Error;
 };
 
+/// From now on the files that assets name may lie outside of the assets' folders.
+void allow_files_outside_assets();
+bool are_files_outside_assets_allowed();
+
 /// Finds a file by the name that an asset gives it: relative to `folder`, with slashes or backslashes. Where nothing is
 /// there, as under a path of another machine, the file of that name in the same folder.
 /// in    asset: in whose folder the file must lie; folder: of the file whose text has the name
@@ -26,5 +31,8 @@ struct OutsideAsset : Error {
 ///       allow_files_outside_assets was not called
 NamedFile find_named_file(const std::string& name, const std::string& asset,
                           const std::filesystem::path& folder);
+
+/// In quotes, without control characters.
+std::string in_quotes(std::string_view name);
 
 }  // namespace opaline

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "assets/asset_file.h"
 #include "opaline/assets/import_asset.h"
 #include "opaline/core/vec3.h"
 
@@ -92,9 +93,6 @@ class UniqueNames {
   std::set<std::string> taken_;
   std::map<std::string, int> tried_;  ///< the last number behind a name
 };
-
-/// In quotes, without control characters.
-std::string in_quotes(std::string_view name);
 
 /// "[0.8, 0.5, 0.2]", or one number where the three are the same.
 std::string short_triple(const Vec3d& value);

@@ -9,8 +9,8 @@
 #include <iterator>
 #include <utility>
 
+#include "assets/asset_file.h"
 #include "benchmark/child_process.h"
-#include "opaline/assets/import_asset.h"
 #include "opaline/core/error.h"
 #include "opaline/core/units.h"
 #include "opaline/image/image.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace opaline {
 
@@ -11,6 +12,18 @@ struct GltfImage {
   std::string path;   ///< empty: in the asset
   std::string bytes;  ///< as encoded
 };
+
+struct GltfModel;
+class GltfRecord;
+struct NamedFile;
+
+/// Between the asset's name and the index.
+inline constexpr std::string_view kGltfImageWord = "#image/";
+
+/// The file of an image; empty where its bytes are in the asset.
+NamedFile gltf_image_file(const GltfModel& gltf, const GltfRecord& image);
+/// error Error{bad_input} naming the asset and the record
+GltfImage gltf_image(const GltfModel& gltf, std::size_t index);
 
 /// True if a name is that of an image in an asset.
 bool is_gltf_image(const std::string& name);

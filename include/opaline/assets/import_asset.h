@@ -19,10 +19,6 @@ struct ImportedAsset {
 /// True if a file's name ends as an asset's does, in upper or lower case.
 bool is_asset_name(const std::string& path);
 
-/// From now on the files that assets name may lie outside of the assets' folders.
-void allow_files_outside_assets();
-bool are_files_outside_assets_allowed();
-
 /// in    path: an asset; mesh_path: how the scene file calls it, relative to its own folder; material: a MaterialX
 ///       file in place of the asset's materials, "skin.mtlx" or "skin.mtlx#name" of a surface or material in it
 /// out   a scene that is valid and shows something: with a camera and lights, the asset's or default ones
