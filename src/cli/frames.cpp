@@ -15,6 +15,7 @@
 #include "opaline/core/interrupt.h"
 #include "opaline/core/units.h"
 #include "opaline/image/image.h"
+#include "opaline/scene/frame_name.h"
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/scene_hash.h"

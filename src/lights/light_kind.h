@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "opaline/lights/light.h"
-#include "opaline/scene/schema.h"
+#include "opaline/scene/key_info.h"
 #include "opaline/scene/value.h"
 
 namespace opaline {

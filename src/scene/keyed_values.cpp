@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "opaline/scene/load_scene.h"
+#include "opaline/scene/frame_name.h"
 
 namespace opaline {
 namespace {

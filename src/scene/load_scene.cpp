@@ -225,15 +225,6 @@ std::string read_scene_text(const std::string& path) {
   return text;
 }
 
-std::string with_frame(const std::string& path, int frame) {
-  const std::size_t begin = path.rfind("##");
-  if (begin == std::string::npos) return path;
-  const std::size_t end = begin + 2, first = path.find_last_not_of('#', begin) + 1;
-  std::string number = std::to_string(std::abs(frame));
-  if (number.size() < end - first) number.insert(0, end - first - number.size(), '0');
-  return path.substr(0, first) + (frame < 0 ? "-" : "") + number + path.substr(end);
-}
-
 Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides,
                   int frame) {
   Document document = merged_document(text, file, overrides, frame);

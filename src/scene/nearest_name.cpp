@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "opaline/scene/json_tree.h"
-#include "opaline/scene/schema.h"
+#include "opaline/scene/key_info.h"
 
 namespace opaline {
 namespace {

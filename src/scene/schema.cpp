@@ -332,10 +332,4 @@ std::string settings_json(const Scene& scene) {
   return '{' + json + '}';
 }
 
-std::string join(std::span<const std::string_view> names) {
-  std::string all;
-  for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
-  return all;
-}
-
 }  // namespace opaline

@@ -10,7 +10,7 @@
 
 #include "core/lower_case.h"
 #include "opaline/core/srgb.h"
-#include "opaline/scene/load_scene.h"
+#include "opaline/scene/frame_name.h"
 #include "opaline/scene/nearest_name.h"
 
 namespace opaline {
@@ -68,6 +68,12 @@ std::optional<Rgb> hex_color(std::string_view s) {
 }
 
 }  // namespace
+
+std::string join(std::span<const std::string_view> names) {
+  std::string all;
+  for (const std::string_view name : names) all += (all.empty() ? "" : ", ") + std::string(name);
+  return all;
+}
 
 double Value::number(const Range& range) const {
   const double x = require_kind(Node::Kind::number, "a number in " + text(range)).number;

@@ -20,6 +20,7 @@
 
 #include "opaline/core/atomic_file.h"
 #include "opaline/core/error.h"
+#include "opaline/scene/frame_name.h"
 #include "opaline/scene/json_tree.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Values and files that change from frame to frame.
+#include "opaline/scene/frame_name.h"
 #include "scene_test.h"
 
 namespace opaline {

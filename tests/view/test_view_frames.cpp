@@ -4,6 +4,7 @@
 #include "../cli/run_program.h"
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
+#include "opaline/scene/frame_name.h"
 #include "view_page.h"
 
 namespace opaline {

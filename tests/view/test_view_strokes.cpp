@@ -3,6 +3,7 @@
 // picture is that of `opaline render` of the scene that the page saves, and memory stays.
 #include "opaline/core/error.h"
 #include "opaline/image/image.h"
+#include "opaline/scene/frame_name.h"
 #include "strokes.h"
 #include "view/page_message.h"
 #include "view/scene_edits.h"

@@ -42,10 +42,6 @@ std::string merged_scene(std::string_view text, const std::string& file,
 std::string edited_scene(std::string_view text, const std::string& file,
                          std::span<const std::string> overrides);
 
-/// The last run of two or more # in a path as the frame's number, with zeros in front to fill them:
-/// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths stay as they are.
-std::string with_frame(const std::string& path, int frame);
-
 /// A medium by itself: a JSON object such as a member of a scene's `media`; its name is "medium".
 /// in    file: what messages call the text
 /// error as parse_scene

@@ -13,7 +13,7 @@
 
 #include "opaline/core/vec3.h"
 #include "opaline/scene/json_tree.h"
-#include "opaline/scene/schema.h"
+#include "opaline/scene/key_info.h"
 
 namespace opaline {
 
