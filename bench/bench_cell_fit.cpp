@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "methods/method.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "opaline/volume/cell_fit.h"

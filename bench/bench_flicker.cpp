@@ -11,6 +11,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "opaline/render/make_plan.h"
 #include "opaline/scene/load_scene.h"
 #include "support/flicker.h"
 

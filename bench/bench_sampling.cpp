@@ -9,6 +9,7 @@
 #include <exception>
 
 #include "opaline/core/stopwatch.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/render/plan.h"
 #include "opaline/sampling/sample_surface.h"
 #include "opaline/scene/load_scene.h"

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "methods/method.h"
 #include "methods/volume/volume_state.h"
 #include "opaline/core/error.h"
 #include "opaline/scene/load_scene.h"

@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "opaline/render/choose_models.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/scene/load_scene.h"
 
 namespace opaline {

@@ -10,6 +10,7 @@
 #include "opaline/core/units.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/across_air.h"
+#include "opaline/render/choose_models.h"
 #include "opaline/render/expected_seconds.h"
 #include "opaline/render/plan_texts.h"
 #include "opaline/scene/names.h"

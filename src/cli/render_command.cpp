@@ -23,6 +23,7 @@
 #include "opaline/render/direct.h"
 #include "opaline/render/expected_error.h"
 #include "opaline/render/expected_seconds.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"

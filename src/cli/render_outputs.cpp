@@ -11,6 +11,7 @@
 #include "opaline/lights/environment_picture.h"
 #include "opaline/render/layers.h"
 #include "opaline/render/mattes.h"
+#include "opaline/render/write_samples.h"
 #include "opaline/scene/names.h"
 #include "opaline/session/light_groups.h"
 

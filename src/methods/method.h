@@ -12,8 +12,8 @@
 #include "methods/body_stages.h"
 #include "methods/planning.h"
 #include "opaline/exitance/evaluate.h"
-#include "opaline/render/layers.h"
-#include "opaline/render/render.h"
+#include "opaline/render/method_layers.h"
+#include "opaline/render/render_input.h"
 #include "render/fields/field.h"
 
 namespace opaline {
@@ -101,5 +101,12 @@ class SubsurfaceMethod {
 };
 
 const SubsurfaceMethod& method_of(Method method);
+
+/// Radiant exitance at points of a body's surface, for callers with points of their own. Where the mean free path is below
+/// the spacing of the samples, `render` traces shadow rays for the irradiance at its points; this interpolates it.
+/// in    body: prepared; points: world space, mm; normals: unit, outward, one a point
+/// out   M_o in W/mm^2, one a point
+std::vector<RgbF> radiant_exitance(const Body& body, const World& world, std::span<const Vec3d> points,
+                                   std::span<const Vec3f> normals, const Settings& settings);
 
 }  // namespace opaline

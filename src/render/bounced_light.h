@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "opaline/render/precompute.h"
 #include "render/camera_rays.h"
 #include "render/gathered_light.h"
 #include "render/shade.h"
@@ -68,6 +69,11 @@ class BouncedPlaces {
   std::vector<Lattice> lattices_;  // each of places half as far apart as the last, where that needs them
   std::size_t chunks_ = 0;         // chunks of places that gathered
 };
+
+/// Irradiance at each body's samples from surfaces, translucent ones as their trees have it and opaque ones as lights
+/// alone light them; one list a body. view: where HeldView::at_samples are of the same samples, added to; or null
+std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
+                                                  HeldView* view = nullptr);
 
 /// At the hits of a picture: by RenderInput::bounced, or places of its own. Hits that no place stands for, at rims, gather
 /// for themselves, with a second bounce where trees hold the first.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/render/plan.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/lights/light.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/render/picture_warnings.h"
 #include "opaline/render/precompute.h"
 #include "opaline/render/surface_textures.h"

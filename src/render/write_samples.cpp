@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "opaline/render/write_samples.h"
+
 #include <fmt/format.h>
 
 #include <bit>
@@ -6,7 +8,6 @@
 
 #include "methods/method.h"
 #include "opaline/core/atomic_file.h"
-#include "opaline/render/precompute.h"
 
 namespace opaline {
 namespace {

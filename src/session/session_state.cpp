@@ -9,6 +9,7 @@
 #include "core/cancel_check.h"
 #include "methods/hierarchical/surface_caches.h"
 #include "opaline/render/choose_models.h"
+#include "opaline/render/make_plan.h"
 
 namespace opaline {
 namespace {

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "opaline/lights/light.h"
+#include "render/bounced_light.h"
 #include "session/session_state.h"
 #include "session/stage_codecs.h"
 

@@ -9,6 +9,7 @@
 #include "core/log.h"
 #include "methods/method.h"
 #include "opaline/core/units.h"
+#include "opaline/render/choose_models.h"
 #include "opaline/render/expected_error.h"
 #include "opaline/render/plan_texts.h"
 #include "opaline/scene/load_scene.h"

@@ -8,6 +8,7 @@
 #include "fuzz_target.h"
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/surface_caches.h"
+#include "methods/method.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 #include "session/stage_codecs.h"

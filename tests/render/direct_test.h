@@ -11,6 +11,7 @@
 #include "methods/direct/entry_sampler.h"
 #include "opaline/core/random.h"
 #include "opaline/render/direct.h"
+#include "opaline/render/make_plan.h"
 #include "support/clouds.h"
 #include "support/scenes.h"
 #include "support/statistics.h"

@@ -4,6 +4,7 @@
 
 #include "core/scratch_folder.h"
 #include "opaline/render/across_air.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/scene/load_scene.h"
 #include "support/scenes.h"
 

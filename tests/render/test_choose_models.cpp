@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "opaline/render/choose_models.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/scene/load_scene.h"
 #include "support/scenes.h"
 

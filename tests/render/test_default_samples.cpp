@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "opaline/image/metrics.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
 #include "support/scenes.h"

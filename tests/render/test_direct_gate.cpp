@@ -6,6 +6,7 @@
 
 #include "opaline/image/metrics.h"
 #include "opaline/render/direct.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/session/session.h"
 

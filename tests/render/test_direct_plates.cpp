@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Profiles in `direct` that know more than a distance: the multipole's two sides, the directional dipole's light.
 #include "opaline/core/error.h"
+#include "opaline/render/make_plan.h"
 #include "render/direct_test.h"
 #include "support/lighting.h"
 #include "support/quadrature.h"

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "opaline/render/choose_models.h"
+#include "opaline/render/make_plan.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -6,6 +6,7 @@
 
 #include "opaline/core/stopwatch.h"
 #include "opaline/render/first_light.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/session/session.h"
 #include "support/scenes.h"
 

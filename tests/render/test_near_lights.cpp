@@ -4,6 +4,7 @@
 #include <numbers>
 #include <random>
 
+#include "opaline/render/make_plan.h"
 #include "render/light_distance.h"
 #include "support/scenes.h"
 #include "support/surfaces.h"

@@ -7,9 +7,11 @@
 #include <string>
 #include <variant>
 
+#include "methods/method.h"
 #include "opaline/core/error.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/direct.h"
+#include "opaline/render/make_plan.h"
 #include "opaline/render/render.h"
 #include "support/scenes.h"
 

@@ -2,15 +2,13 @@
 // Automatic choice of the radial profile of a medium in a body, and its expected error against random walks.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 
 #include "opaline/geometry/world.h"
+#include "opaline/render/plan.h"
 
 namespace opaline {
-
-struct GroupPlan;
 
 /// Properties of a body's shape that decide the model.
 struct BodyShape {
@@ -23,16 +21,6 @@ struct BodyShape {
   /// Plate thickness of a square plate of this area and mean thickness, mm: its rim is part of the area.
   double plate_thickness() const;
   bool is_flat() const;
-};
-
-struct BodyModel {
-  ChosenProfile profile;
-  bool is_chosen = false;  ///< and not named by the scene
-  std::string reason;
-  /// Rms of the radiant exitance against random walks over the mean, of the worst channel; none: unknown, of a profile
-  /// that the scene names, and of a mesh that is open.
-  std::optional<double> expected_error;
-  std::optional<double> expected_error_of_diffusion;  ///< the same of Method::volume_diffusion
 };
 
 /// Chosen profile, and the reason.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "opaline/core/vec3.h"
+#include "opaline/render/method_layers.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
@@ -26,12 +27,6 @@ struct PixelSample {
 
   /// True if no camera ray of the pixel met anything.
   bool empty() const { return coverage == 0 && emitted == RgbF{}; }
-};
-
-/// Layers that depend on the method.
-struct MethodLayers {
-  bool variance = false;  ///< variance of the mean, in place of the irradiance
-  bool error = false;     ///< estimated standard error
 };
 
 /// Channel names, in the order in which store_pixel writes them. The irradiance of `volume` is that of opaque surfaces

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "opaline/geometry/ray_scene.h"
-#include "opaline/render/choose_models.h"
+#include "opaline/render/body_model.h"
 #include "opaline/scene/scene.h"
 
 namespace opaline {
@@ -42,10 +42,5 @@ struct Plan {
   std::size_t triangles = 0;
   RayBuild rays = RayBuild::careful;  ///< quick where that costs the rays of one picture less than it saves
 };
-
-/// Decides groups and sample counts, unless the settings say otherwise: spacing of the diffuse mean free
-/// path, but of one to one and a half mean free paths, in the channel where that is least; at least 10,000
-/// samples. Sampling error at that: under 1 % (mean) on every scene of the repository (test_default_samples).
-Plan make_plan(const Scene& scene, const World& world);
 
 }  // namespace opaline

@@ -65,24 +65,8 @@ Rgb reduced_absorption(Medium medium);
 
 /// A body's surface where the cells of its plan cut it.
 CutSurface cut_surface(const PrecomputeInput& input, const Body& body);
-/// Irradiance at each body's samples from surfaces, translucent ones as their trees have it and opaque ones as lights
-/// alone light them; one list a body. view: where HeldView::at_samples are of the same samples, added to; or null
-std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
-                                                  HeldView* view = nullptr);
-
 /// The light transmitted at a body's samples, tinted.
 /// in    lights: those of its transfers
 std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights);
-
-/// Radiant exitance at points of a body's surface, for callers with points of their own. Where the mean free path is below
-/// the spacing of the samples, `render` traces shadow rays for the irradiance at its points; this interpolates it.
-/// in    body: prepared; points: world space, mm; normals: unit, outward, one a point
-/// out   M_o in W/mm^2, one a point
-std::vector<RgbF> radiant_exitance(const Body& body, const World& world, std::span<const Vec3d> points,
-                                   std::span<const Vec3f> normals, const Settings& settings);
-
-/// Writes all samples as a binary PLY: x y z, nx ny nz, area, irradiance r g b, shape; world space, mm.
-/// error Error{run_failed} naming the file
-void write_samples_ply(const std::string& path, std::span<const Body> groups, const World& world);
 
 }  // namespace opaline

@@ -7,10 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "opaline/core/monitor.h"
 #include "opaline/image/image.h"
 #include "opaline/render/held_view.h"
-#include "opaline/render/precompute.h"
+#include "opaline/render/render_input.h"
 
 namespace opaline {
 
@@ -21,21 +20,6 @@ struct Rectangle {
 
 /// Rendered rectangle: the crop of the film, or the whole film.
 Rectangle rendered_part(const Film& film);
-
-/// Light that surfaces send to what a camera sees, at places of its picture.
-class BouncedPlaces;
-
-struct RenderInput {
-  const Scene& scene;
-  const World& world;
-  const RayScene& rays;
-  std::span<const Body> groups = {};  ///< bodies from the precompute; not needed by Method::lambert
-  Monitor* monitor = nullptr;
-  HeldView* view = nullptr;  ///< cached view of an earlier image, or new; at most kMostHeldBytes
-  /// Where light bounces: gathered for this or another view of the same surfaces in the same light; null: for this one,
-  /// by render.
-  std::shared_ptr<const BouncedPlaces> bounced = {};
-};
 
 /// A larger view is not held, bytes.
 inline constexpr std::size_t kMostHeldBytes = std::size_t(256) << 20;

@@ -8,7 +8,7 @@
 
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/near_field/near_field_sampler.h"
-#include "opaline/render/render.h"
+#include "opaline/render/render_input.h"
 #include "render/fields/field.h"
 
 namespace opaline {

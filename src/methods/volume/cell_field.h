@@ -2,7 +2,7 @@
 // Radiant exitance known as means over the cells of samples, interpolated between them.
 #pragma once
 
-#include "opaline/render/render.h"
+#include "opaline/render/render_input.h"
 #include "opaline/volume/cell_fit.h"
 #include "render/fields/field.h"
 

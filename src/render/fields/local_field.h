@@ -3,7 +3,7 @@
 // path.
 #pragma once
 
-#include "opaline/render/render.h"
+#include "opaline/render/render_input.h"
 #include "render/fields/field.h"
 
 namespace opaline {

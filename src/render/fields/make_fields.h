@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/render/render.h"
+#include "opaline/render/render_input.h"
 #include "render/fields/field.h"
 
 namespace opaline {

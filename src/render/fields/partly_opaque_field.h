@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "opaline/render/render.h"
+#include "opaline/render/render_input.h"
 #include "render/fields/field.h"
 
 namespace opaline {
