@@ -16,7 +16,7 @@
 
 #include "methods/method.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "opaline/volume/cell_fit.h"
 
 using namespace opaline;

@@ -17,7 +17,7 @@
 #include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace {
 

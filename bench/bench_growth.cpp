@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "user_seconds.h"
 
 namespace {

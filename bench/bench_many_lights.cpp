@@ -17,7 +17,7 @@
 #include "opaline/image/metrics.h"
 #include "opaline/lights/light.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "user_seconds.h"
 
 namespace {

@@ -16,6 +16,7 @@
 #include "opaline/quality/measured_error.h"
 #include "opaline/quality/target_error.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/scene/scene_properties.h"
 #include "quality/probe.h"
 #include "target_error_scenes.h"
 #include "target_error_table.h"

@@ -15,7 +15,7 @@
 
 #include "large_asset.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "view/browser.h"
 
 namespace {

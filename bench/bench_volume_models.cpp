@@ -26,7 +26,7 @@
 #include "model_table.h"
 #include "opaline/core/random.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "opaline/volume/nearest_sample.h"
 #include "user_seconds.h"
 #include "volume_truth.h"

@@ -12,7 +12,7 @@
 
 #include "methods/volume/volume_state.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "user_seconds.h"
 
 using namespace opaline;

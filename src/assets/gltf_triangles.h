@@ -3,6 +3,7 @@
 
 #include "assets/gltf_model.h"
 #include "opaline/assets/gltf_part.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 

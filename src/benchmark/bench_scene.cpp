@@ -15,6 +15,7 @@
 #include "opaline/core/units.h"
 #include "opaline/image/image.h"
 #include "opaline/scene/load_scene.h"
+#include "opaline/scene/scene_properties.h"
 #include "opaline/session/scene_hash.h"
 
 namespace opaline {

@@ -12,7 +12,7 @@
 #include "opaline/core/error.h"
 #include "opaline/core/units.h"
 #include "opaline/image/error_picture.h"
-#include "opaline/image/flip.h"
+#include "opaline/image/metrics.h"
 #include "opaline/scene/nearest_name.h"
 
 namespace opaline {

@@ -28,7 +28,7 @@
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
 #include "opaline/session/scene_hash.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "opaline/volume/volume_diffusion.h"
 
 namespace opaline {

@@ -13,6 +13,7 @@
 #include "opaline/render/mattes.h"
 #include "opaline/render/write_samples.h"
 #include "opaline/scene/names.h"
+#include "opaline/scene/scene_properties.h"
 #include "opaline/session/light_groups.h"
 
 namespace opaline {

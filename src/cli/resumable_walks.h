@@ -6,7 +6,7 @@
 #include <string>
 
 #include "opaline/core/error.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "opaline/session/walk_file.h"
 
 namespace opaline {

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "opaline/scene/scene_properties.h"
 #include "opaline/transport/fresnel.h"
 
 namespace opaline {

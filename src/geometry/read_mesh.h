@@ -6,6 +6,7 @@
 
 #include "geometry/source_mesh.h"
 #include "opaline/scene/scene.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 

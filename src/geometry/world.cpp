@@ -6,6 +6,8 @@
 
 #include "geometry/check_world.h"
 #include "geometry/shape_label.h"
+#include "opaline/scene/scene_properties.h"
+#include "opaline/scene/source_place.h"
 
 namespace opaline {
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers of formulas and all constants are those of Andersson et al. 2020.
-#include "opaline/image/flip.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include "opaline/core/error.h"
 #include "opaline/core/parallel.h"
 #include "opaline/core/vec3.h"
+#include "opaline/image/metrics.h"
 
 namespace opaline {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "opaline/core/random.h"
 #include "opaline/image/metrics.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "methods/hierarchical/hierarchical_state.h"
 #include "opaline/core/stopwatch.h"
+#include "opaline/scene/scene_properties.h"
 #include "quality/probe.h"
 
 namespace opaline {

@@ -11,6 +11,7 @@
 
 #include "opaline/core/error.h"
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/scene/source_place.h"
 
 namespace opaline {
 namespace {

@@ -13,6 +13,7 @@
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/render/expected_error.h"
 #include "opaline/scene/names.h"
+#include "opaline/scene/scene_properties.h"
 #include "render/body_groups.h"
 #include "render/local_media.h"
 

@@ -9,6 +9,7 @@
 #include "opaline/core/random.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/geometry/nearest_surface.h"
+#include "opaline/scene/scene_properties.h"
 #include "opaline/volume/volume_diffusion.h"
 
 namespace opaline {

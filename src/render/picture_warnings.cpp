@@ -11,6 +11,8 @@
 
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/lights/light.h"
+#include "opaline/scene/scene_properties.h"
+#include "opaline/scene/source_place.h"
 #include "scene/override_key.h"
 
 namespace opaline {

@@ -18,6 +18,7 @@
 #include "opaline/render/precompute.h"
 #include "opaline/render/surface_textures.h"
 #include "opaline/scene/names.h"
+#include "opaline/scene/scene_properties.h"
 #include "render/body_groups.h"
 #include "render/check_reach.h"
 #include "render/plan_samples.h"

@@ -10,6 +10,7 @@
 #include "opaline/core/units.h"
 #include "opaline/diffusion/diffuse_profile.h"
 #include "opaline/render/plan_texts.h"
+#include "opaline/scene/scene_properties.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "render/local_media.h"
 

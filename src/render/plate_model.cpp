@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "methods/method.h"
 #include "opaline/core/parallel.h"
+#include "opaline/scene/scene_properties.h"
 #include "render/bounced_light.h"
 #include "render/tile_renderer.h"
 

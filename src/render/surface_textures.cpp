@@ -9,6 +9,8 @@
 #include "opaline/core/error.h"
 #include "opaline/core/random.h"
 #include "opaline/image/texture_file.h"
+#include "opaline/scene/scene_properties.h"
+#include "opaline/scene/source_place.h"
 
 namespace opaline {
 namespace {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "opaline/core/error.h"
+#include "opaline/scene/source_place.h"
 
 namespace opaline {
 namespace {

@@ -13,6 +13,7 @@
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
 #include "opaline/scene/nearest_name.h"
+#include "opaline/scene/scene_properties.h"
 #include "opaline/scene/unread_format.h"
 #include "scene/deprecated_spellings.h"
 #include "scene/edited_text.h"

@@ -13,6 +13,8 @@
 #include "opaline/geometry/mesh_file.h"
 #include "opaline/image/texture_file.h"
 #include "opaline/lights/environment_picture.h"
+#include "opaline/scene/scene_properties.h"
+#include "opaline/scene/source_place.h"
 
 namespace opaline {
 namespace {

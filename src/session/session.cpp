@@ -44,6 +44,13 @@ RenderResult Session::render(Monitor* monitor) {
   return state_->render(monitor);
 }
 
+std::vector<RgbF> Session::radiant_exitance(std::size_t body, std::span<const Vec3d> points,
+                                            std::span<const Vec3f> normals) {
+  prepare();
+  require(body < bodies().size(), "the body exists");
+  return opaline::radiant_exitance(bodies()[body], world(), points, normals, scene().settings);
+}
+
 const Scene& Session::scene() const {
   return state_->scene_;
 }

@@ -9,7 +9,9 @@
 #include "core/cancel_check.h"
 #include "methods/hierarchical/surface_caches.h"
 #include "opaline/render/choose_models.h"
+#include "opaline/render/first_light.h"
 #include "opaline/render/make_plan.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 namespace {

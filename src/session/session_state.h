@@ -3,7 +3,7 @@
 #pragma once
 
 #include "methods/method.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "session/body_keys.h"
 #include "session/shape_key.h"
 

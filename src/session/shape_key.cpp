@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "opaline/geometry/mesh_file.h"
+#include "opaline/scene/source_place.h"
 
 namespace opaline {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "opaline/cache/stage_key.h"
 #include "opaline/scene/scene.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 

@@ -4,6 +4,7 @@
 #include "geometry/embree.h"
 #include "opaline/lights/light.h"
 #include "opaline/render/surface_textures.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 namespace {

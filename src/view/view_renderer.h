@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "opaline/core/monitor.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline {
 

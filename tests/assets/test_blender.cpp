@@ -7,7 +7,7 @@
 
 #include "asset_test.h"
 #include "opaline/image/image.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline::asset_test {
 namespace {

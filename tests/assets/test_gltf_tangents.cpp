@@ -4,7 +4,7 @@
 
 #include "asset_test.h"
 #include "opaline/render/surface_textures.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "support/pictures.h"
 
 namespace opaline::asset_test {

@@ -19,7 +19,7 @@
 #include "opaline/core/machine_memory.h"
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline::fuzz {
 namespace {

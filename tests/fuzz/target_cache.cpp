@@ -10,7 +10,7 @@
 #include "methods/hierarchical/surface_caches.h"
 #include "methods/method.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "session/stage_codecs.h"
 
 namespace opaline::fuzz {

@@ -3,6 +3,7 @@
 
 #include "mesh_test.h"
 #include "opaline/geometry/surface_uv.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline::mesh_test {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "layers.h"
-#include "opaline/image/flip.h"
+#include "opaline/image/metrics.h"
 
 namespace opaline {
 namespace {

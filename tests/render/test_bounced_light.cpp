@@ -7,6 +7,7 @@
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
 #include "opaline/scene/names.h"
+#include "opaline/scene/scene_properties.h"
 #include "support/cell_exitance.h"
 #include "support/scene_picture.h"
 #include "support/scenes.h"

@@ -8,7 +8,7 @@
 #include "opaline/render/direct.h"
 #include "opaline/render/make_plan.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline {
 namespace {

@@ -7,7 +7,7 @@
 #include "opaline/image/metrics.h"
 #include "opaline/render/render.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "opaline/transport/fresnel.h"
 #include "opaline/transport/half_space.h"
 #include "opaline/transport/smooth_boundary.h"

@@ -7,7 +7,7 @@
 #include "opaline/core/stopwatch.h"
 #include "opaline/render/first_light.h"
 #include "opaline/render/make_plan.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "support/scenes.h"
 
 namespace opaline {

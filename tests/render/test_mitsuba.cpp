@@ -10,7 +10,7 @@
 #include "core/scratch_folder.h"
 #include "opaline/image/image.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/scratch_folder.h"
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "support/pictures.h"
 #include "support/scene_picture.h"
 #include "support/scenes.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "opaline/transport/fresnel.h"
 #include "support/scenes.h"
 

@@ -9,7 +9,7 @@
 #include "core/scratch_folder.h"
 #include "opaline/render/direct.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline::test {
 

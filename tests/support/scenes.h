@@ -8,7 +8,7 @@
 
 #include "opaline/render/render.h"
 #include "opaline/scene/scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline::test {
 

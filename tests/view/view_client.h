@@ -21,7 +21,7 @@
 
 #include "../core/scratch_folder.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "view/view_frame.h"
 #include "view/view_server.h"
 

@@ -2,7 +2,7 @@
 // The diffusion equation inside meshes.
 #include "opaline/irradiance/irradiance.h"
 #include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 #include "opaline/transport/fresnel.h"
 #include "opaline/transport/half_space.h"
 #include "opaline/volume/cell_fit.h"

@@ -10,6 +10,7 @@
 #include "opaline/core/vec3.h"
 #include "opaline/geometry/mesh.h"
 #include "opaline/scene/scene.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 

@@ -6,6 +6,7 @@
 
 #include "opaline/geometry/mesh.h"
 #include "opaline/scene/scene.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline {
 

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "opaline/render/direct.h"
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline {
 

@@ -10,6 +10,7 @@
 #include "opaline/image/image.h"
 #include "opaline/render/held_view.h"
 #include "opaline/render/render_input.h"
+#include "opaline/session/session.h"
 
 namespace opaline {
 
@@ -25,14 +26,6 @@ Rectangle rendered_part(const Film& film);
 inline constexpr std::size_t kMostHeldBytes = std::size_t(256) << 20;
 inline constexpr std::size_t kMostCoatBytes = std::size_t(256) << 20;  ///< besides, of HeldView::Coat
 
-struct RenderResult {
-  Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2
-                ///< sr)
-  std::vector<std::uint8_t> translucent;  ///< a pixel each: 1 where more than half of what it shows is so
-  std::size_t queries = 0;                ///< points at which exitance was evaluated
-  std::size_t non_finite = 0;  ///< pixels whose radiance is not finite; 0 unless something is broken
-};
-
 /// Radiance seen by the camera.
 /// `hierarchical`: translucent surfaces send out M_o Ft(omega_o) / (pi (1 - F_bar)) with M_o from the trees;
 /// `lambert`: the same with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing
@@ -43,11 +36,5 @@ RenderResult render(const RenderInput& input);
 
 /// For RenderInput::bounced, with what else the input has.
 std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input);
-
-/// Mean over the lit pixels of what the `error` layer expects of |error| / max(diffuse, 1e-3 of its p99), the
-/// worst channel; 0 without that layer.
-/// in    counted: which pixels are, as RenderResult::translucent; empty, or none of them: all
-/// out   within a factor 2 of the measured mean in most scenes at most settings (bench_error_estimate)
-double estimated_relative_error(const Image& image, std::span<const std::uint8_t> counted = {});
 
 }  // namespace opaline

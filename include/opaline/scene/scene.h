@@ -12,16 +12,25 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "opaline/core/error.h"
 #include "opaline/core/vec3.h"
 #include "opaline/scene/enumerations.h"
-#include "opaline/scene/source_place.h"
 
 namespace opaline {
+
+/// Where a record of a scene was written.
+struct SourcePlace {
+  std::string file;          ///< the scene file, or "--set path=value"; empty: made by a program
+  int line = 0, column = 0;  ///< as in Error
+  /// Where a thing is written is no part of what it is: scenes that differ in blanks alone are equal.
+  friend bool operator==(const SourcePlace&, const SourcePlace&) { return true; }
+};
 
 /// Affine map p -> x p.x + y p.y + z p.z + translation.
 struct Transform {
@@ -109,30 +118,6 @@ struct Medium {
   Grain grain{};                      ///< grain of the boundary
   friend bool operator==(const Medium&, const Medium&) = default;
 };
-
-/// True if some of its light is reflected diffusely at its surface.
-inline bool is_partly_opaque(const Medium& medium) {
-  return medium.subsurface_weight < 1 || medium.weight_texture;
-}
-
-/// True if textures vary the colour, or the colour or radius, of the medium inside its bodies. Methods that use a radial
-/// profile ignore this (SubsurfaceMethod::follows_textures_inside).
-inline bool has_color_inside(const Medium& medium) {
-  return medium.texture_mix == TextureMix::medium && medium.tint_texture;
-}
-inline bool varies_inside(const Medium& medium) {
-  return has_color_inside(medium) || medium.radius_texture;
-}
-
-inline ProfileKind profile_kind(const Medium& medium) {
-  return medium.profile.value_or(medium.chosen.kind);
-}
-inline double profile_thickness(const Medium& medium) {
-  return medium.profile ? medium.thickness : medium.chosen.thickness;
-}
-inline NormalizedDiffusionFit profile_fit(const Medium& medium) {
-  return medium.profile ? medium.fit : medium.chosen.fit;
-}
 
 // ---- shapes ---------------------------------------------------------------------------------------------
 
@@ -374,23 +359,25 @@ struct Scene {
   friend bool operator==(const Scene&, const Scene&) = default;
 };
 
-/// How often light goes from one surface to another: Settings::bounces, or 1 where one thing that sends light back can
-/// light another and the method knows of it. A body does not light itself unless it is asked for.
-int bounces_of(const Scene& scene);
-/// The textures of a shape and of its medium.
-std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
-/// True if a shape's mesh has to have UVs.
-bool needs_uvs(const Scene& scene, const Shape& shape);
-/// Grain of a shape whose boundary is rough and has one; else null.
-const Grain* grain_of(const Scene& scene, const Shape& shape);
+// ---- loading -------------------------------------------------------------------------------------------
 
-/// Surface coordinates read with a mesh: UVs, and tangents if the file has them.
-enum class MeshUvs {
-  unread,
-  if_any,        ///< both
-  required,      ///< UVs alone
-  with_tangents  ///< UVs required
-};
-MeshUvs uvs_of(const Scene& scene, const Shape& shape);
+/// Reads and checks a scene file, or an asset (GLB, glTF, OBJ) as what import_asset makes of it; lengths are converted to mm by its mm_per_unit.
+/// in    overrides: "media.marble.eta=1.4": a path of keys (array elements by index or by "name") and a JSON
+/// value
+///       (a value that is not JSON is taken as a string), applied before checking
+/// error Error{bad_input} with file, line and column, what was expected, what was found, and the nearest
+/// valid
+///       name: no such file, broken JSON, unknown or duplicate key, wrong type, value out of range
+/// frame: which one, of values and mesh files that change.
+Scene load_scene(const std::string& path, std::span<const std::string> overrides = {}, int frame = 1);
+
+/// The same from text; `file` stands in messages and its folder in front of relative mesh paths.
+Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides = {},
+                  int frame = 1);
+
+/// A medium by itself: a JSON object such as a member of a scene's `media`; its name is "medium".
+/// in    file: what messages call the text
+/// error as parse_scene
+Medium parse_medium(std::string_view text, const std::string& file);
 
 }  // namespace opaline

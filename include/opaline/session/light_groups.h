@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "opaline/session/session.h"
+#include "opaline/session/session_records.h"
 
 namespace opaline {
 

@@ -8,12 +8,36 @@
 #include <string>
 #include <vector>
 
-#include "opaline/render/first_light.h"
-#include "opaline/render/render.h"
-#include "opaline/session/session_work.h"
-#include "opaline/session/stage_cache.h"
+#include "opaline/core/monitor.h"
+#include "opaline/image/image.h"
+#include "opaline/scene/scene.h"
 
 namespace opaline {
+
+// Records of the program itself (session_records.h).
+class BouncedPlaces;
+class RayScene;
+class StageCache;
+struct Body;
+struct Plan;
+struct SessionWork;
+struct StageCost;
+struct WalkStore;
+struct World;
+
+struct RenderResult {
+  Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2
+                ///< sr)
+  std::vector<std::uint8_t> translucent;  ///< a pixel each: 1 where more than half of what it shows is so
+  std::size_t queries = 0;                ///< points at which exitance was evaluated
+  std::size_t non_finite = 0;  ///< pixels whose radiance is not finite; 0 unless something is broken
+};
+
+/// Mean over the lit pixels of what the `error` layer expects of |error| / max(diffuse, 1e-3 of its p99), the
+/// worst channel; 0 without that layer.
+/// in    counted: which pixels are, as RenderResult::translucent; empty, or none of them: all
+/// out   within a factor 2 of the measured mean in most scenes at most settings (bench_error_estimate)
+double estimated_relative_error(const Image& image, std::span<const std::uint8_t> counted = {});
 
 /// Caches the stage results of the last scene, each with the key of its inputs. The next scene reuses results with
 /// equal keys, looks up the others in the disk cache, and computes the rest:
@@ -51,7 +75,7 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Chooses the profiles of the bodies (choose_models.h) for all later scenes. With methods that have samples, it also
+  /// Chooses the profiles of the bodies for all later scenes. With methods that have samples, it also
   /// places the samples of this scene and keeps them: later scenes move these samples along, or place their own on
   /// different surfaces without discarding them. The frames of a shot are therefore the same in any process,
   /// whichever frames it renders.
@@ -85,7 +109,7 @@ class Session {
   /// Builds the ray structure only; prepare builds it otherwise.
   void prepare_rays();
 
-  /// Coarse preview of the scene (first_light.h); requires only the rays.
+  /// Coarse preview of the scene; requires only the rays.
   Image first_light(Monitor* monitor = nullptr);
 
   /// Computes all missing stages for the method; a second call does nothing. A scene without lights has no stages: it is
@@ -96,8 +120,22 @@ class Session {
   /// Renders the scene; prepares it first.
   RenderResult render(Monitor* monitor = nullptr);
 
+  /// Radiant exitance at points of a body's surface; prepares the scene first. Where the mean free path is below the spacing
+  /// of the samples, `render` traces shadow rays for the irradiance at its points; this interpolates it.
+  /// in    body: index of a translucent shape or group, in the order of the scene; points: world space, mm;
+  ///       normals: unit, outward, one a point
+  /// out   M_o in W/mm^2, one a point
+  /// error as prepare
+  std::vector<RgbF> radiant_exitance(std::size_t body, std::span<const Vec3d> points,
+                                     std::span<const Vec3f> normals);
+
   /// Scene of the last edit, with the chosen profiles.
   const Scene& scene() const;
+  /// Decisions on reused and recomputed stages, a line each.
+  const std::vector<std::string>& decisions() const;
+
+  // For the program and its tests.
+
   /// Meshes of the scene around one origin.
   const World& world() const;
   /// Stages, samples and memory of the scene.
@@ -108,8 +146,6 @@ class Session {
   /// Bounced places of the last image with bounces, for any view and light; null: none for these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
   const SessionWork& work() const;  ///< work of the last edit and since
-  /// Decisions on reused and recomputed stages, a line each.
-  const std::vector<std::string>& decisions() const;
   /// Costs of rays, sampling, irradiance, octree, and of exitance with surface caches.
   const std::vector<StageCost>& costs() const;
 

@@ -10,6 +10,7 @@
 #include "geometry/source_mesh.h"
 #include "opaline/scene/mesh_formats.h"
 #include "opaline/scene/scene.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 

@@ -10,6 +10,7 @@
 #include "methods/method.h"
 #include "opaline/core/parallel.h"
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/scene/scene_properties.h"
 #include "render/tile_renderer.h"
 
 namespace opaline {

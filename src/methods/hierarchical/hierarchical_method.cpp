@@ -11,6 +11,7 @@
 #include "methods/hierarchical/surface_caches.h"
 #include "opaline/diffusion/tabulated.h"
 #include "opaline/exitance/cloud_error.h"
+#include "opaline/scene/scene_properties.h"
 #include "session/stage_codecs.h"
 
 namespace opaline {

@@ -6,6 +6,7 @@
 
 #include "methods/hierarchical/hierarchical_method.h"
 #include "methods/hierarchical/surface_caches.h"
+#include "opaline/scene/scene_properties.h"
 #include "render/light_distance.h"
 #include "render/plan_samples.h"
 

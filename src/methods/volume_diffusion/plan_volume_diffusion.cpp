@@ -7,6 +7,7 @@
 
 #include "methods/volume_diffusion/volume_diffusion_method.h"
 #include "opaline/diffusion/diffuse_profile.h"
+#include "opaline/scene/scene_properties.h"
 #include "opaline/volume/volume_diffusion.h"
 #include "render/plan_samples.h"
 

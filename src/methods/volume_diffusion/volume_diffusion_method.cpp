@@ -10,6 +10,7 @@
 #include "methods/volume_diffusion/body_cells.h"
 #include "methods/volume_diffusion/volume_diffusion_state.h"
 #include "opaline/render/surface_textures.h"
+#include "opaline/scene/scene_properties.h"
 #include "render/local_media.h"
 #include "session/stage_codecs.h"
 

@@ -8,6 +8,7 @@
 #include "opaline/irradiance/sample_key.h"
 #include "opaline/lights/light.h"
 #include "opaline/lights/light_tree.h"
+#include "opaline/scene/scene_properties.h"
 #include "render/fields/local_field.h"
 #include "render/fields/partly_opaque_field.h"
 

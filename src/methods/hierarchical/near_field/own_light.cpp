@@ -11,6 +11,7 @@
 #include "opaline/core/random.h"
 #include "opaline/exitance/refined_stake.h"
 #include "opaline/exitance/surface_patch.h"
+#include "opaline/scene/scene_properties.h"
 
 namespace opaline {
 namespace {
