@@ -2,9 +2,9 @@
 // The library: a Scene, a Session that renders it, images and their files, comparison of images.
 #pragma once
 
-#include "opaline/core/error.h"
-#include "opaline/core/monitor.h"
-#include "opaline/image/image.h"
-#include "opaline/image/metrics.h"
-#include "opaline/scene/scene.h"
-#include "opaline/session/session.h"
+#include "opaline/compare.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
+#include "opaline/monitor.h"
+#include "opaline/scene.h"
+#include "opaline/session.h"

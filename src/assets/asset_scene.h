@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "assets/asset_file.h"
-#include "opaline/assets/import_asset.h"
-#include "opaline/core/vec3.h"
+#include "asset_files/asset_file.h"
+#include "assets/import_asset.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 

@@ -3,10 +3,10 @@
 
 #include <numbers>
 
-#include "assets/asset_file.h"
-#include "assets/gltf_file.h"
-#include "opaline/assets/gltf_image.h"
-#include "opaline/core/input_file.h"
+#include "asset_files/asset_file.h"
+#include "asset_files/gltf_file.h"
+#include "asset_files/gltf_image.h"
+#include "core/input_file.h"
 
 namespace opaline {
 namespace {

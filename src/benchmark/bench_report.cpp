@@ -7,7 +7,7 @@
 
 #include "benchmark/figures.h"
 #include "core/log.h"
-#include "opaline/core/units.h"
+#include "core/units.h"
 
 namespace opaline {
 namespace {

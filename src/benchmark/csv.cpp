@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

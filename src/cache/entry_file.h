@@ -13,8 +13,8 @@
 #include <variant>
 #include <vector>
 
-#include "opaline/cache/blobs.h"
-#include "opaline/cache/stage_key.h"
+#include "cache/blobs.h"
+#include "cache/stage_key.h"
 
 namespace opaline {
 

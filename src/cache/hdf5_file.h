@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/cache/blobs.h"
+#include "cache/blobs.h"
 
 namespace opaline {
 

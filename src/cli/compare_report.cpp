@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "opaline/core/units.h"
+#include "core/units.h"
 
 namespace opaline {
 namespace {

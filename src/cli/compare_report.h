@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/arguments.h"
-#include "opaline/image/metrics.h"
+#include "opaline/compare.h"
 
 namespace opaline {
 

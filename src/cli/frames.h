@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/arguments.h"
-#include "opaline/session/session_records.h"
+#include "session/session_records.h"
 
 namespace opaline {
 

@@ -5,7 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/process_start.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace {
 

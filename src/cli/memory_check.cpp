@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "methods/method.h"
-#include "opaline/core/error.h"
-#include "opaline/core/machine_memory.h"
-#include "opaline/core/units.h"
-#include "opaline/render/layers.h"
-#include "opaline/render/render.h"
+#include "core/machine_memory.h"
+#include "core/units.h"
+#include "opaline/error.h"
+#include "render/layers.h"
+#include "render/render.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 

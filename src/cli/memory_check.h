@@ -2,7 +2,7 @@
 // Check for sufficient memory before a render.
 #pragma once
 
-#include "opaline/render/plan.h"
+#include "bodies/plan.h"
 
 namespace opaline {
 

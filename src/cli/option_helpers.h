@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "assets/asset_file.h"
+#include "asset_files/asset_file.h"
 #include "cli/option_values.h"
 
 namespace opaline {

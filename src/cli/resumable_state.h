@@ -6,9 +6,9 @@
 #include <string>
 
 #include "cli/arguments.h"
-#include "opaline/core/error.h"
-#include "opaline/render/direct.h"
-#include "opaline/session/scene_hash.h"
+#include "methods/direct/direct.h"
+#include "opaline/error.h"
+#include "session/scene_hash.h"
 
 namespace opaline {
 

@@ -5,9 +5,9 @@
 #include <chrono>
 #include <string>
 
-#include "opaline/core/error.h"
-#include "opaline/session/session_records.h"
-#include "opaline/session/walk_file.h"
+#include "opaline/error.h"
+#include "session/session_records.h"
+#include "session/walk_file.h"
 
 namespace opaline {
 

@@ -2,7 +2,7 @@
 // Cancellation of stages that report no progress: they have no monitor, and look at that of the work they are part of.
 #pragma once
 
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 
 namespace opaline {
 

@@ -2,7 +2,7 @@
 // How much of the near field is left beside the border of a surface.
 #pragma once
 
-#include "opaline/exitance/evaluate.h"
+#include "exitance/evaluate.h"
 
 namespace opaline {
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel.h"
 #include "exitance/chunk_packets.h"
 #include "exitance/packet_samples.h"
-#include "opaline/core/parallel.h"
 
 namespace opaline {
 namespace {

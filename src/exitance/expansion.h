@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "opaline/core/vec3.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 

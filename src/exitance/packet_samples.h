@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "exitance/evaluate.h"
 #include "exitance/simd/lane_kernels.h"
-#include "opaline/exitance/evaluate.h"
 
 namespace opaline {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "exitance/octree.h"
 #include "exitance/simd/lanes.h"
-#include "opaline/exitance/octree.h"
 
 namespace opaline {
 

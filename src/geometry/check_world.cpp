@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "opaline/geometry/mesh.h"
+#include "geometry/mesh.h"
 
 namespace opaline {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "core/random.h"
 #include "geometry/topology.h"
-#include "opaline/core/random.h"
 
 namespace opaline {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/geometry/world.h"
+#include "geometry/world.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/check_world.h"
 #include "geometry/shape_label.h"
-#include "opaline/scene/scene_properties.h"
-#include "opaline/scene/source_place.h"
+#include "scene/scene_properties.h"
+#include "scene/source_place.h"
 
 namespace opaline {
 

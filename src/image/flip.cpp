@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
-#include "opaline/core/vec3.h"
-#include "opaline/image/metrics.h"
+#include "core/parallel.h"
+#include "opaline/compare.h"
+#include "opaline/error.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 namespace {

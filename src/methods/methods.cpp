@@ -2,12 +2,12 @@
 // The one list of methods.
 #include <array>
 
+#include "bodies/surface_textures.h"
 #include "methods/direct/direct_method.h"
 #include "methods/hierarchical/hierarchical_method.h"
 #include "methods/lambert/lambert_method.h"
 #include "methods/volume/volume_method.h"
 #include "methods/volume_diffusion/volume_diffusion_method.h"
-#include "opaline/render/surface_textures.h"
 
 namespace opaline {
 

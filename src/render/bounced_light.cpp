@@ -6,8 +6,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
+#include "core/parallel.h"
+#include "core/random.h"
 
 namespace opaline {
 namespace {

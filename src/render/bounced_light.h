@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/render/precompute.h"
+#include "bodies/body.h"
 #include "render/camera_rays.h"
 #include "render/gathered_light.h"
 #include "render/shade.h"

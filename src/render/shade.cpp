@@ -6,12 +6,12 @@
 #include <map>
 #include <utility>
 
-#include "methods/method.h"
-#include "opaline/core/random.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/shared_roughness.h"
+#include "core/random.h"
 #include "render/bounced_light.h"
 #include "render/camera_rays.h"
+#include "subsurface/method.h"
+#include "transport/fresnel.h"
+#include "transport/shared_roughness.h"
 
 namespace opaline {
 namespace {

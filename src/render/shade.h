@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "opaline/irradiance/irradiance.h"
-#include "opaline/lights/light.h"
-#include "opaline/render/layers.h"
-#include "opaline/render/render.h"
+#include "irradiance/irradiance.h"
+#include "lights/light.h"
 #include "render/appearance.h"
 #include "render/fields/make_fields.h"
+#include "render/layers.h"
+#include "render/render.h"
 
 namespace opaline {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 #include "sampling/sample_grid.h"
 
 namespace opaline {

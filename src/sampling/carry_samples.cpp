@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/sampling/carry_samples.h"
+#include "sampling/carry_samples.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
-#include "opaline/geometry/surface_point.h"
+#include "core/parallel.h"
+#include "geometry/surface_point.h"
+#include "opaline/error.h"
 #include "sampling/cell_parts.h"
 #include "sampling/stretched_cloud.h"
 

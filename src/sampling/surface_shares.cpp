@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
-#include "opaline/sampling/sample_surface.h"
+#include "core/parallel.h"
+#include "opaline/error.h"
+#include "sampling/sample_surface.h"
 #include "sampling/share_tasks.h"
 #include "sampling/triangle_divider.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/scene/scene_properties.h"
+#include "scene/scene_properties.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/session/session.h"
+#include "opaline/session.h"
 
 #include <utility>
 

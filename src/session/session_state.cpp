@@ -8,10 +8,10 @@
 
 #include "core/cancel_check.h"
 #include "methods/hierarchical/surface_caches.h"
-#include "opaline/render/choose_models.h"
-#include "opaline/render/first_light.h"
-#include "opaline/render/make_plan.h"
-#include "opaline/scene/scene_properties.h"
+#include "plan/choose_models.h"
+#include "plan/make_plan.h"
+#include "scene/scene_properties.h"
+#include "session/first_light.h"
 
 namespace opaline {
 namespace {

@@ -6,8 +6,8 @@
 #include <ctime>
 #include <optional>
 
-#include "opaline/geometry/mesh_file.h"
-#include "opaline/scene/source_place.h"
+#include "geometry/mesh_file.h"
+#include "scene/source_place.h"
 
 namespace opaline {
 namespace {

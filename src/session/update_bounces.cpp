@@ -2,10 +2,10 @@
 // The light that goes from one surface to another: at the samples of bodies and at places of the picture.
 #include <memory>
 
-#include "opaline/lights/light.h"
+#include "lights/light.h"
 #include "render/bounced_light.h"
 #include "session/session_state.h"
-#include "session/stage_codecs.h"
+#include "stages/stage_codecs.h"
 
 namespace opaline {
 namespace {

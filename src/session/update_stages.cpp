@@ -2,11 +2,11 @@
 // Stages that all methods share: samples and the light transmitted there. A result gets its key once it is complete.
 #include <fmt/format.h>
 
-#include "opaline/lights/light.h"
-#include "opaline/render/surface_textures.h"
-#include "opaline/sampling/carry_samples.h"
+#include "bodies/surface_textures.h"
+#include "lights/light.h"
+#include "sampling/carry_samples.h"
 #include "session/session_state.h"
-#include "session/stage_codecs.h"
+#include "stages/stage_codecs.h"
 
 namespace opaline {
 namespace {

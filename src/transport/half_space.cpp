@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/transport/half_space.h"
+#include "transport/half_space.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/transport/fresnel.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

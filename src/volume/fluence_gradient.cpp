@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 
 namespace opaline {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "opaline/core/random.h"
+#include "core/random.h"
 
 namespace opaline {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
-#include "opaline/transport/random_walk.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "transport/random_walk.h"
 
 namespace opaline {
 namespace {

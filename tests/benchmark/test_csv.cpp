@@ -7,7 +7,7 @@
 #include <set>
 
 #include "benchmark/csv.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "../benchmark/page_data.h"
 #include "benchmark/csv.h"
-#include "opaline/scene/enumerations.h"
-#include "opaline/transport/fresnel.h"
+#include "opaline/enumerations.h"
 #include "run_program.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

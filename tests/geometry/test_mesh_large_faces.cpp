@@ -4,7 +4,7 @@
 #include <random>
 
 #include "mesh_test.h"
-#include "opaline/scene/scene_properties.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 namespace {

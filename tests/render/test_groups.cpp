@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "opaline/render/make_plan.h"
+#include "plan/make_plan.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <random>
 
-#include "opaline/render/make_plan.h"
-#include "render/light_distance.h"
+#include "methods/hierarchical/light_distance.h"
+#include "plan/make_plan.h"
 #include "support/scenes.h"
 #include "support/surfaces.h"
 

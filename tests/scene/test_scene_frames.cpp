@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Values and files that change from frame to frame.
-#include "opaline/scene/frame_name.h"
 #include "scene_test.h"
+#include "values/frame_name.h"
 
 namespace opaline {
 namespace {

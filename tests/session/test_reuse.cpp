@@ -7,7 +7,7 @@
 #include <cstring>
 #include <thread>
 
-#include "opaline/render/make_plan.h"
+#include "plan/make_plan.h"
 #include "session_test.h"
 
 namespace opaline {

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/render/direct.h"
+#include "methods/direct/direct.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.h"
+#include "diffusion/diffuse_profile.h"
 #include "methods/direct/direct_field.h"
-#include "methods/method.h"
-#include "opaline/core/parallel.h"
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/scene/scene_properties.h"
 #include "render/tile_renderer.h"
+#include "scene/scene_properties.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

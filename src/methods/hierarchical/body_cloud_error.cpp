@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "exitance/cloud_error.h"
+#include "lights/light.h"
 #include "methods/hierarchical/hierarchical_state.h"
-#include "opaline/exitance/cloud_error.h"
-#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {

@@ -2,8 +2,8 @@
 // Estimated error of a body's hierarchical evaluation.
 #pragma once
 
-#include "opaline/exitance/evaluate.h"
-#include "opaline/render/precompute.h"
+#include "bodies/body.h"
+#include "exitance/evaluate.h"
 
 namespace opaline {
 

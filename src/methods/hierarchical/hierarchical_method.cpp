@@ -5,14 +5,14 @@
 
 #include <variant>
 
+#include "diffusion/tabulated.h"
+#include "exitance/cloud_error.h"
 #include "methods/hierarchical/body_cloud_error.h"
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/sample_field.h"
 #include "methods/hierarchical/surface_caches.h"
-#include "opaline/diffusion/tabulated.h"
-#include "opaline/exitance/cloud_error.h"
-#include "opaline/scene/scene_properties.h"
-#include "session/stage_codecs.h"
+#include "scene/scene_properties.h"
+#include "stages/stage_codecs.h"
 
 namespace opaline {
 namespace {

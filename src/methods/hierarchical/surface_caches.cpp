@@ -6,8 +6,8 @@
 
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/near_field/own_light.h"
-#include "methods/method.h"
 #include "render/camera_rays.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

@@ -2,7 +2,7 @@
 // `lambert`: diffuse reflection at the hit, the limit of a vanishing mean free path and the floor of all costs.
 #pragma once
 
-#include "methods/method.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 

@@ -2,9 +2,9 @@
 // Radiant exitance known as means over the cells of samples, interpolated between them.
 #pragma once
 
-#include "opaline/render/render_input.h"
-#include "opaline/volume/cell_fit.h"
-#include "render/fields/field.h"
+#include "subsurface/field.h"
+#include "subsurface/render_input.h"
+#include "volume/cell_fit.h"
 
 namespace opaline {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/volume/fit_cells.h"
 
-#include "opaline/scene/scene_properties.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 

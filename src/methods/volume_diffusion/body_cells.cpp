@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "render/local_media.h"
+#include "bodies/local_media.h"
 
 namespace opaline {
 namespace {

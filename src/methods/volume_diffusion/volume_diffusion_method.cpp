@@ -5,14 +5,14 @@
 
 #include <utility>
 
+#include "bodies/local_media.h"
+#include "bodies/surface_textures.h"
 #include "methods/volume/cell_field.h"
 #include "methods/volume/cell_warnings.h"
 #include "methods/volume_diffusion/body_cells.h"
 #include "methods/volume_diffusion/volume_diffusion_state.h"
-#include "opaline/render/surface_textures.h"
-#include "opaline/scene/scene_properties.h"
-#include "render/local_media.h"
-#include "session/stage_codecs.h"
+#include "scene/scene_properties.h"
+#include "stages/stage_codecs.h"
 
 namespace opaline {
 namespace {

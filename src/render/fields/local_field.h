@@ -3,8 +3,8 @@
 // path.
 #pragma once
 
-#include "opaline/render/render_input.h"
-#include "render/fields/field.h"
+#include "subsurface/field.h"
+#include "subsurface/render_input.h"
 
 namespace opaline {
 

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "methods/method.h"
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/irradiance/sample_key.h"
-#include "opaline/lights/light.h"
-#include "opaline/lights/light_tree.h"
-#include "opaline/scene/scene_properties.h"
+#include "diffusion/diffuse_profile.h"
+#include "irradiance/sample_key.h"
+#include "lights/light.h"
+#include "lights/light_tree.h"
 #include "render/fields/local_field.h"
 #include "render/fields/partly_opaque_field.h"
+#include "scene/scene_properties.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "opaline/render/render_input.h"
-#include "render/fields/field.h"
+#include "subsurface/field.h"
+#include "subsurface/render_input.h"
 
 namespace opaline {
 

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/parallel.h"
+#include "core/random.h"
+#include "exitance/refined_stake.h"
+#include "exitance/surface_patch.h"
 #include "methods/hierarchical/hierarchical_state.h"
-#include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
-#include "opaline/exitance/refined_stake.h"
-#include "opaline/exitance/surface_patch.h"
-#include "opaline/scene/scene_properties.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 namespace {

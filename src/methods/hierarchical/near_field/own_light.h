@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "bodies/body.h"
+#include "exitance/surface_cache.h"
 #include "methods/hierarchical/near_field/near_field_sampler.h"
-#include "opaline/exitance/surface_cache.h"
-#include "opaline/render/precompute.h"
 
 namespace opaline {
 

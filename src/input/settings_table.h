@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The keys of `film` and `settings`, each with the member it sets: a new setting is a member of scene.h and a
+// row here.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "input/schema.h"
+#include "values/value.h"
+
+namespace opaline {
+
+/// A row of the schema whose value goes into a member of Owner.
+template <class Owner>
+struct Member {
+  KeyInfo info;
+  void (*read)(Owner& owner, const Value& value, double mm_per_unit);
+  std::string (*json)(const Owner& owner);  ///< empty: not set
+};
+
+std::span<const Member<Film>> film_members();
+std::span<const Member<Settings>> settings_members();
+std::span<const Member<Laboratory>> laboratory_members();
+
+}  // namespace opaline
