@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene requires: its bodies, samples, stages and memory.
+// The plan of a scene: its bodies, samples, stages and memory.
 #pragma once
 
 #include "bodies/plan.h"
