@@ -125,7 +125,7 @@ class Session {
   /// in    body: index of a translucent shape or group, in the order of the scene; points: world space, mm;
   ///       normals: unit, outward, one a point
   /// out   M_o in W/mm^2, one a point
-  /// error as prepare
+  /// error as prepare; Error{bad_input}: no such body, or a method without bodies
   std::vector<RgbF> radiant_exitance(std::size_t body, std::span<const Vec3d> points,
                                      std::span<const Vec3f> normals);
 
