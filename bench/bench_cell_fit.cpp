@@ -14,9 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
-#include "opaline/volume/cell_fit.h"
+#include "input/load_scene.h"
+#include "session/session_records.h"
+#include "subsurface/method.h"
+#include "volume/cell_fit.h"
 
 using namespace opaline;
 

@@ -24,13 +24,13 @@
 #include <string>
 
 #include "benchmark/csv.h"
+#include "core/atomic_file.h"
+#include "core/random.h"
 #include "error_estimate_measure.h"
 #include "error_estimate_pairs.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/random.h"
-#include "opaline/image/metrics.h"
-#include "opaline/quality/measured_error.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
+#include "opaline/compare.h"
+#include "quality/measured_error.h"
 
 namespace {
 

@@ -12,12 +12,12 @@
 #include <optional>
 #include <string_view>
 
+#include "core/stopwatch.h"
+#include "input/load_scene.h"
 #include "methods/hierarchical/hierarchical_state.h"
-#include "opaline/core/stopwatch.h"
-#include "opaline/render/render.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/scene/names.h"
-#include "opaline/session/session.h"
+#include "render/render.h"
+#include "scene/names.h"
+#include "session/session_records.h"
 
 namespace {
 

@@ -11,7 +11,8 @@
 #include <exception>
 #include <filesystem>
 
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
+#include "plan/make_plan.h"
 #include "support/flicker.h"
 
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "input/load_scene.h"
+#include "session/session_records.h"
 #include "user_seconds.h"
 
 namespace {

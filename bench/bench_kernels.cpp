@@ -7,11 +7,11 @@
 #include <memory>
 #include <vector>
 
-#include "opaline/core/random.h"
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/diffusion/kernel_table.h"
-#include "opaline/geometry/ray_scene.h"
-#include "opaline/transport/fresnel.h"
+#include "core/random.h"
+#include "diffusion/diffuse_profile.h"
+#include "diffusion/kernel_table.h"
+#include "geometry/ray_scene.h"
+#include "transport/fresnel.h"
 
 namespace {
 

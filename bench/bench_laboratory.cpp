@@ -9,7 +9,7 @@
 
 #include <cstdlib>
 
-#include "opaline/transport/laboratory.h"
+#include "transport/laboratory.h"
 #include "user_seconds.h"
 
 int main(int argc, char** argv) {

@@ -13,11 +13,11 @@
 #include <numbers>
 #include <string>
 
-#include "opaline/core/random.h"
-#include "opaline/image/metrics.h"
-#include "opaline/lights/light.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "core/random.h"
+#include "input/load_scene.h"
+#include "lights/light.h"
+#include "opaline/compare.h"
+#include "session/session_records.h"
 #include "user_seconds.h"
 
 namespace {

@@ -14,9 +14,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "opaline/diffusion/normalized_diffusion.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/laboratory.h"
+#include "diffusion/normalized_diffusion.h"
+#include "transport/half_space.h"
+#include "transport/laboratory.h"
 
 namespace {
 

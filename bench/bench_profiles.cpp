@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/transport/laboratory.h"
+#include "diffusion/diffuse_profile.h"
+#include "input/load_scene.h"
+#include "transport/laboratory.h"
 #include "user_seconds.h"
 
 namespace {

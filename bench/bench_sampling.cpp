@@ -8,10 +8,11 @@
 #include <cstdlib>
 #include <exception>
 
-#include "opaline/core/stopwatch.h"
-#include "opaline/render/plan.h"
-#include "opaline/sampling/sample_surface.h"
-#include "opaline/scene/load_scene.h"
+#include "bodies/plan.h"
+#include "core/stopwatch.h"
+#include "input/load_scene.h"
+#include "plan/make_plan.h"
+#include "sampling/sample_surface.h"
 
 int main(int argc, char** argv) try {
   using namespace opaline;

@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
-#include "opaline/lights/light.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "input/load_scene.h"
+#include "lights/light.h"
+#include "session/session_records.h"
 #include "user_seconds.h"
 
 namespace {

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <string>
 
-#include "opaline/core/stopwatch.h"
+#include "core/stopwatch.h"
 #include "support/shadow_edge_line.h"
 
 namespace {

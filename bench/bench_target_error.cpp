@@ -11,12 +11,13 @@
 #include <exception>
 #include <filesystem>
 
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/stopwatch.h"
-#include "opaline/quality/measured_error.h"
-#include "opaline/quality/target_error.h"
-#include "opaline/scene/load_scene.h"
+#include "core/atomic_file.h"
+#include "core/stopwatch.h"
+#include "input/load_scene.h"
+#include "quality/measured_error.h"
 #include "quality/probe.h"
+#include "quality/target_error.h"
+#include "scene/scene_properties.h"
 #include "target_error_scenes.h"
 #include "target_error_table.h"
 

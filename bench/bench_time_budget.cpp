@@ -10,11 +10,11 @@
 #include <filesystem>
 
 #include "benchmark/csv.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/stopwatch.h"
-#include "opaline/quality/time_budget.h"
-#include "opaline/scene/load_scene.h"
+#include "core/atomic_file.h"
+#include "core/stopwatch.h"
+#include "input/load_scene.h"
 #include "quality/probe.h"
+#include "quality/time_budget.h"
 #include "target_error_scenes.h"
 
 namespace {

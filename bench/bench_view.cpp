@@ -13,9 +13,9 @@
 #include <functional>
 #include <vector>
 
+#include "input/load_scene.h"
 #include "large_asset.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 #include "view/browser.h"
 
 namespace {

@@ -22,13 +22,13 @@
 #include <string_view>
 #include <vector>
 
+#include "core/random.h"
+#include "input/load_scene.h"
 #include "methods/volume/volume_state.h"
 #include "model_table.h"
-#include "opaline/core/random.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
-#include "opaline/volume/nearest_sample.h"
+#include "session/session_records.h"
 #include "user_seconds.h"
+#include "volume/nearest_sample.h"
 #include "volume_truth.h"
 
 using namespace opaline;

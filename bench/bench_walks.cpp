@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "input/load_scene.h"
 #include "methods/volume/volume_state.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 #include "user_seconds.h"
 
 using namespace opaline;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/image/metrics.h"
+#include "opaline/compare.h"
 
 namespace opaline {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 
 namespace opaline {
 

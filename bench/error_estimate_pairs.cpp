@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
-#include "opaline/core/random.h"
-#include "opaline/core/vec3.h"
-#include "scene/presets.h"
+#include "core/random.h"
+#include "input/presets.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 namespace {

@@ -2,7 +2,7 @@
 #include "large_asset.h"
 
 #include "assets/asset_test.h"
-#include "opaline/core/vec3.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 namespace {

@@ -11,11 +11,12 @@
 #include <string_view>
 #include <vector>
 
+#include "input/load_scene.h"
 #include "methods/volume/volume_state.h"
-#include "opaline/core/error.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/volume/nearest_sample.h"
+#include "opaline/error.h"
+#include "subsurface/method.h"
 #include "user_seconds.h"
+#include "volume/nearest_sample.h"
 #include "volume_truth.h"
 
 namespace opaline {

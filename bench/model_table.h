@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 
 namespace opaline {
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "scene/presets.h"
+#include "input/presets.h"
 
 namespace opaline {
 namespace {

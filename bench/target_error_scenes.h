@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

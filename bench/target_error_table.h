@@ -6,7 +6,7 @@
 #include <string>
 
 #include "benchmark/csv.h"
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "opaline/core/stopwatch.h"
+#include "core/stopwatch.h"
 
 namespace opaline {
 

@@ -11,8 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "opaline/assets/import_asset.h"
-#include "opaline/core/vec3.h"
+#include "asset_files/asset_file.h"
+#include "assets/import_asset.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 
@@ -88,9 +89,6 @@ class UniqueNames {
   std::set<std::string> taken_;
   std::map<std::string, int> tried_;  ///< the last number behind a name
 };
-
-/// In quotes, without control characters.
-std::string in_quotes(std::string_view name);
 
 /// "[0.8, 0.5, 0.2]", or one number for three equal ones.
 std::string short_triple(const Vec3d& value);

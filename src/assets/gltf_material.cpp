@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-#include "assets/asset_file.h"
+#include "asset_files/asset_file.h"
 #include "assets/gltf_texture.h"
 
 namespace opaline {

@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
+#include "asset_files/gltf_model.h"
 #include "assets/asset_scene.h"
-#include "assets/gltf_model.h"
 
 namespace opaline {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "asset_files/gltf_model.h"
 #include "assets/asset_scene.h"
-#include "assets/gltf_model.h"
 
 namespace opaline {
 

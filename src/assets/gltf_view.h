@@ -2,9 +2,9 @@
 // Conversion of the camera and the light of a glTF node.
 #pragma once
 
+#include "asset_files/gltf_model.h"
 #include "assets/asset_scene.h"
-#include "assets/gltf_model.h"
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/assets/import_asset.h"
+#include "assets/import_asset.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "assets/asset_scene.h"
 #include "core/lower_case.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

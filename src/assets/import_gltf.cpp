@@ -5,12 +5,12 @@
 #include <array>
 #include <map>
 
+#include "asset_files/gltf_accessor.h"
 #include "assets/asset_scene.h"
-#include "assets/gltf_accessor.h"
 #include "assets/gltf_material.h"
-#include "assets/gltf_pose.h"
-#include "assets/gltf_triangles.h"
 #include "assets/gltf_view.h"
+#include "geometry/formats/gltf_pose.h"
+#include "geometry/formats/gltf_triangles.h"
 
 namespace opaline {
 namespace {

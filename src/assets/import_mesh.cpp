@@ -5,7 +5,7 @@
 
 #include "assets/asset_scene.h"
 #include "geometry/read_mesh.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

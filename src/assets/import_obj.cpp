@@ -6,16 +6,16 @@
 #include <map>
 #include <optional>
 
-#include "assets/asset_bytes.h"
-#include "assets/asset_file.h"
+#include "asset_files/asset_bytes.h"
+#include "asset_files/asset_file.h"
 #include "assets/asset_scene.h"
 #include "assets/mtl_library.h"
 #include "assets/mtl_texture.h"
 #include "assets/text_lines.h"
-#include "opaline/assets/obj_material.h"
-#include "opaline/core/byte_order_mark.h"
-#include "opaline/core/error.h"
-#include "opaline/image/texture_file.h"
+#include "core/byte_order_mark.h"
+#include "geometry/formats/obj_material.h"
+#include "image/texture_file.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -11,13 +11,13 @@
 #include <filesystem>
 #include <pugixml.hpp>
 
-#include "assets/asset_bytes.h"
-#include "assets/asset_file.h"
+#include "asset_files/asset_bytes.h"
+#include "asset_files/asset_file.h"
 #include "assets/asset_scene.h"
 #include "assets/materialx_bump.h"
-#include "opaline/core/error.h"
-#include "opaline/core/rgb_primaries.h"
-#include "opaline/core/srgb.h"
+#include "core/rgb_primaries.h"
+#include "core/srgb.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "assets/text_lines.h"
 #include "core/lower_case.h"
-#include "opaline/assets/obj_material.h"
-#include "opaline/scene/nearest_name.h"
+#include "geometry/formats/obj_material.h"
+#include "values/nearest_name.h"
 
 namespace opaline {
 namespace {

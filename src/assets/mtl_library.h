@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "opaline/core/vec3.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 

@@ -36,13 +36,6 @@ void write(std::string& text, const Json& value, std::size_t indent) {
 
 }  // namespace
 
-std::string in_quotes(std::string_view name) {
-  std::string text = "'";
-  constexpr std::size_t most = 60;
-  for (const char c : name.substr(0, most)) text += c >= 0 && c < ' ' ? '?' : c;
-  return text + (name.size() > most ? "...'" : "'");
-}
-
 std::string short_triple(const Vec3d& value) {
   if (value.x == value.y && value.y == value.z) return fmt::format("{:.4g}", value.x);
   return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", value.x, value.y, value.z);

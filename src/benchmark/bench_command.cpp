@@ -20,10 +20,10 @@
 #include "benchmark/machine.h"
 #include "benchmark/regression.h"
 #include "benchmark/results_json.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/core/input_file.h"
-#include "opaline/core/interrupt.h"
+#include "core/atomic_file.h"
+#include "core/input_file.h"
+#include "core/interrupt.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "benchmark/machine.h"
 #include "benchmark/page.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/core/input_file.h"
+#include "core/atomic_file.h"
+#include "core/input_file.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "benchmark/child_process.h"
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 
 namespace opaline {
 

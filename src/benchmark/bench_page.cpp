@@ -12,7 +12,7 @@
 #include "benchmark/results_json.h"
 #include "benchmark/trade_off.h"
 #include "core/log.h"
-#include "opaline/image/error_picture.h"
+#include "image/error_picture.h"
 
 namespace opaline {
 namespace {

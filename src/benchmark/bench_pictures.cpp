@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "benchmark/bench_page.h"
-#include "opaline/image/error_picture.h"
-#include "opaline/image/image.h"
+#include "image/error_picture.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/log.h"
-#include "opaline/core/units.h"
+#include "core/units.h"
 
 namespace opaline {
 namespace {

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <map>
 
-#include "opaline/core/units.h"
+#include "core/units.h"
 
 namespace opaline {
 namespace {

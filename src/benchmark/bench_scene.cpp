@@ -9,13 +9,14 @@
 #include <iterator>
 #include <utility>
 
+#include "asset_files/asset_file.h"
 #include "benchmark/child_process.h"
-#include "opaline/assets/import_asset.h"
-#include "opaline/core/error.h"
-#include "opaline/core/units.h"
-#include "opaline/image/image.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/scene_hash.h"
+#include "core/units.h"
+#include "input/load_scene.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
+#include "scene/scene_properties.h"
+#include "session/scene_hash.h"
 
 namespace opaline {
 namespace {

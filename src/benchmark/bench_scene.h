@@ -9,8 +9,8 @@
 
 #include "benchmark/bench_command.h"
 #include "benchmark/ladder.h"
-#include "opaline/core/monitor.h"
-#include "opaline/scene/scene.h"
+#include "opaline/monitor.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

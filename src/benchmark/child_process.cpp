@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "core/progress.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "benchmark/bench_row.h"
 #include "core/log.h"
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 
 namespace opaline {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "benchmark/picture_error.h"
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

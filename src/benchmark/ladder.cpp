@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
 
 namespace opaline {
 namespace {

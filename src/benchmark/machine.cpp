@@ -12,7 +12,7 @@
 #include <sstream>
 #include <thread>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

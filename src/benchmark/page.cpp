@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "core/atomic_file.h"
+#include "core/input_file.h"
 #include "core/log.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/core/input_file.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

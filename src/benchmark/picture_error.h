@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "opaline/image/metrics.h"
+#include "opaline/compare.h"
 
 namespace opaline {
 

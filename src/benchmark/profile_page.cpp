@@ -9,9 +9,9 @@
 #include "benchmark/page.h"
 #include "benchmark/results_json.h"
 #include "core/log.h"
-#include "opaline/scene/enumerations.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/point_source.h"
+#include "opaline/enumerations.h"
+#include "transport/fresnel.h"
+#include "transport/point_source.h"
 
 namespace opaline {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "opaline/scene/enumerations.h"
+#include "opaline/enumerations.h"
 
 namespace opaline {
 namespace {

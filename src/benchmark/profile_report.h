@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/core/monitor.h"
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/transport/laboratory.h"
+#include "diffusion/diffuse_profile.h"
+#include "opaline/monitor.h"
+#include "transport/laboratory.h"
 
 namespace opaline {
 

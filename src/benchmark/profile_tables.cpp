@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "benchmark/profile_page.h"
-#include "opaline/scene/enumerations.h"
+#include "opaline/enumerations.h"
 
 namespace opaline {
 namespace {

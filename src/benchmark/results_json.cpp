@@ -5,7 +5,7 @@
 #include <map>
 
 #include "core/log.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/cache/blob_cache.h"
+#include "cache/blob_cache.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <filesystem>
 
+#include "cache/cache_folder.h"
 #include "cache/entry_file.h"
-#include "opaline/cache/cache_folder.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

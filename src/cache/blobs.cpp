@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/cache/blobs.h"
+#include "cache/blobs.h"
 
 #include <algorithm>
 

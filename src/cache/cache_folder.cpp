@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/cache/cache_folder.h"
+#include "cache/cache_folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -14,7 +14,7 @@
 #include <tuple>
 
 #include "cache/entry_file.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "opaline/cache/stage_key.h"
+#include "cache/stage_key.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>

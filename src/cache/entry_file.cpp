@@ -13,9 +13,9 @@
 #include "cache/content_hash.h"
 #include "cache/entry_header.h"
 #include "cache/hdf5_file.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/core/machine_memory.h"
+#include "core/atomic_file.h"
+#include "core/machine_memory.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

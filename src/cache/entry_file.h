@@ -10,8 +10,8 @@
 #include <string>
 #include <variant>
 
-#include "opaline/cache/blobs.h"
-#include "opaline/cache/stage_key.h"
+#include "cache/blobs.h"
+#include "cache/stage_key.h"
 
 namespace opaline {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/cache/blobs.h"
+#include "cache/blobs.h"
 
 namespace opaline {
 

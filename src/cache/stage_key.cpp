@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/cache/stage_key.h"
+#include "cache/stage_key.h"
 
 #include <fmt/format.h>
 

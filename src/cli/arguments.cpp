@@ -14,6 +14,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "assets/import_asset.h"
 #include "cli/command_options.h"
 #include "cli/frames.h"
 #include "cli/help_texts.h"
@@ -21,12 +22,11 @@
 #include "cli/option_values.h"
 #include "cli/quality.h"
 #include "core/lower_case.h"
-#include "opaline/assets/import_asset.h"
-#include "opaline/core/error.h"
-#include "opaline/scene/json_tree.h"
-#include "opaline/scene/nearest_name.h"
-#include "opaline/scene/schema.h"
-#include "opaline/scene/unread_format.h"
+#include "input/schema.h"
+#include "opaline/error.h"
+#include "scene/unread_format.h"
+#include "values/json_tree.h"
+#include "values/nearest_name.h"
 
 namespace opaline {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "benchmark/bench_command.h"
+#include "cache/blob_cache.h"
 #include "core/log.h"
-#include "opaline/cache/blob_cache.h"
-#include "opaline/core/error.h"
-#include "opaline/image/picture_layers.h"
+#include "image/picture_layers.h"
+#include "opaline/error.h"
 #include "view/view_server.h"
 
 namespace opaline {

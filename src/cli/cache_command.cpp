@@ -3,11 +3,11 @@
 
 #include <chrono>
 
+#include "cache/cache_folder.h"
 #include "cli/commands.h"
 #include "cli/report.h"
-#include "opaline/cache/cache_folder.h"
-#include "opaline/core/error.h"
-#include "opaline/core/units.h"
+#include "core/units.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

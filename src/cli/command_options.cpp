@@ -9,7 +9,7 @@
 #include "cli/help_texts.h"
 #include "cli/option_helpers.h"
 #include "cli/option_values.h"
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
 
 namespace opaline {
 namespace {

@@ -12,12 +12,11 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
-#include "opaline/core/error.h"
-#include "opaline/core/units.h"
-#include "opaline/image/error_picture.h"
-#include "opaline/image/flip.h"
-#include "opaline/image/metrics.h"
-#include "opaline/scene/nearest_name.h"
+#include "core/units.h"
+#include "image/error_picture.h"
+#include "opaline/compare.h"
+#include "opaline/error.h"
+#include "values/nearest_name.h"
 
 namespace opaline {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/command_options.h"
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
 
 namespace opaline {
 namespace {

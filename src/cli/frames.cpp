@@ -11,13 +11,14 @@
 #include <set>
 
 #include "cli/metadata.h"
-#include "opaline/core/error.h"
-#include "opaline/core/interrupt.h"
-#include "opaline/core/units.h"
-#include "opaline/image/image.h"
-#include "opaline/scene/json_tree.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/scene_hash.h"
+#include "core/interrupt.h"
+#include "core/units.h"
+#include "input/load_scene.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
+#include "session/scene_hash.h"
+#include "values/frame_name.h"
+#include "values/json_tree.h"
 
 namespace opaline {
 namespace {

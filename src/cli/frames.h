@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/arguments.h"
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 
 namespace opaline {
 

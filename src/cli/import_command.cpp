@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <filesystem>
 
+#include "assets/import_asset.h"
 #include "cli/commands.h"
-#include "opaline/assets/import_asset.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/scene/load_scene.h"
+#include "core/atomic_file.h"
+#include "input/load_scene.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

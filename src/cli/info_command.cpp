@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/commands.h"
 #include "cli/report.h"
-#include "opaline/render/choose_models.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
+#include "plan/choose_models.h"
+#include "plan/make_plan.h"
 
 namespace opaline {
 

@@ -12,7 +12,7 @@
 
 #include "cli/commands.h"
 #include "core/out_of_memory.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "cli/report.h"
-#include "methods/method.h"
-#include "opaline/scene/names.h"
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
+#include "scene/names.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "bodies/body.h"
 #include "cli/arguments.h"
-#include "opaline/core/stopwatch.h"
-#include "opaline/render/precompute.h"
+#include "core/stopwatch.h"
 
 namespace opaline {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "asset_files/asset_file.h"
 #include "cli/option_values.h"
-#include "opaline/assets/import_asset.h"
 
 namespace opaline {
 

@@ -13,9 +13,9 @@
 #include <sstream>
 #include <vector>
 
-#include "opaline/scene/json_tree.h"
-#include "opaline/scene/nearest_name.h"
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
+#include "values/json_tree.h"
+#include "values/nearest_name.h"
 
 namespace opaline {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "opaline/image/picture_layers.h"
-#include "opaline/scene/schema.h"
+#include "image/picture_layers.h"
+#include "input/schema.h"
 
 namespace opaline {
 

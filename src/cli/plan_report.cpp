@@ -5,15 +5,16 @@
 #include <cmath>
 #include <utility>
 
+#include "bodies/plan_texts.h"
 #include "cli/report.h"
-#include "methods/method.h"
-#include "opaline/core/units.h"
-#include "opaline/lights/light.h"
-#include "opaline/render/across_air.h"
-#include "opaline/render/expected_seconds.h"
-#include "opaline/render/plan_texts.h"
-#include "opaline/scene/names.h"
-#include "scene/override_key.h"
+#include "core/units.h"
+#include "lights/light.h"
+#include "plan/across_air.h"
+#include "plan/choose_models.h"
+#include "plan/expected_seconds.h"
+#include "scene/names.h"
+#include "subsurface/method.h"
+#include "values/override_key.h"
 
 namespace opaline {
 namespace {

@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/stages.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
 
 namespace opaline {
 namespace {

@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "cli/render_outputs.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/scene/names.h"
+#include "core/atomic_file.h"
+#include "input/load_scene.h"
+#include "opaline/error.h"
+#include "scene/names.h"
 
 namespace opaline {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "cli/arguments.h"
 #include "cli/stages.h"
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 
 namespace opaline {
 

@@ -4,15 +4,17 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "methods/method.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/image/texture_file.h"
-#include "opaline/lights/environment_picture.h"
-#include "opaline/render/layers.h"
-#include "opaline/render/mattes.h"
-#include "opaline/scene/names.h"
-#include "opaline/session/light_groups.h"
+#include "core/atomic_file.h"
+#include "image/texture_file.h"
+#include "lights/environment_picture.h"
+#include "opaline/error.h"
+#include "render/layers.h"
+#include "render/mattes.h"
+#include "scene/names.h"
+#include "scene/scene_properties.h"
+#include "session/light_groups.h"
+#include "session/write_samples.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

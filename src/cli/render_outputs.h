@@ -7,8 +7,8 @@
 
 #include "cli/arguments.h"
 #include "cli/stages.h"
-#include "opaline/image/image.h"
-#include "opaline/session/session.h"
+#include "opaline/image.h"
+#include "session/session_records.h"
 
 namespace opaline {
 

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "bodies/plan.h"
 #include "core/log.h"
-#include "opaline/core/stopwatch.h"
-#include "opaline/quality/measured_error.h"
-#include "opaline/quality/target_error.h"
-#include "opaline/quality/time_budget.h"
-#include "opaline/render/plan.h"
-#include "opaline/render/plate_model.h"
+#include "core/stopwatch.h"
+#include "plan/plate_model.h"
+#include "quality/measured_error.h"
+#include "quality/target_error.h"
+#include "quality/time_budget.h"
 
 namespace opaline {
 

@@ -6,11 +6,11 @@
 #include <string>
 
 #include "cli/arguments.h"
-#include "opaline/core/error.h"
-#include "opaline/render/direct.h"
-#include "opaline/session/scene_hash.h"
-#include "opaline/session/session.h"
-#include "opaline/session/walk_file.h"
+#include "methods/direct/direct.h"
+#include "opaline/error.h"
+#include "opaline/session.h"
+#include "session/scene_hash.h"
+#include "session/walk_file.h"
 
 namespace opaline {
 

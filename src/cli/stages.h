@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "cli/report.h"
+#include "core/interrupt.h"
 #include "core/progress.h"
-#include "opaline/core/interrupt.h"
-#include "opaline/core/monitor.h"
-#include "opaline/core/stopwatch.h"
+#include "core/stopwatch.h"
+#include "opaline/monitor.h"
 
 namespace opaline {
 

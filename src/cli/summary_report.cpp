@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/report.h"
-#include "opaline/core/units.h"
+#include "core/units.h"
 
 namespace opaline {
 namespace {

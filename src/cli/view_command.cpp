@@ -15,7 +15,7 @@
 #include "benchmark/child_process.h"
 #include "cli/commands.h"
 #include "cli/metadata.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 #include "view/view_server.h"
 
 namespace opaline {

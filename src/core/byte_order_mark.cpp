@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/core/byte_order_mark.h"
+#include "core/byte_order_mark.h"
 
 #include <algorithm>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

@@ -2,7 +2,7 @@
 // Cancellation of stages without progress: they have no monitor, and check that of the enclosing work.
 #pragma once
 
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 #include <cstdio>
 #include <cstdlib>

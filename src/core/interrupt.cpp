@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/core/interrupt.h"
+#include "core/interrupt.h"
 
 #include <atomic>
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "core/out_of_memory.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

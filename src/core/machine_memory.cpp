@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/core/machine_memory.h"
+#include "core/machine_memory.h"
 
 #include <sys/resource.h>
 

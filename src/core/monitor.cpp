@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

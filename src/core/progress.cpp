@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-#include "opaline/core/units.h"
+#include "core/units.h"
 
 namespace opaline {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/log.h"
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/core/rgb_primaries.h"
+#include "core/rgb_primaries.h"
 
 namespace opaline {
 namespace {

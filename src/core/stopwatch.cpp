@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/core/stopwatch.h"
+#include "core/stopwatch.h"
 
 #include <sys/resource.h>
 

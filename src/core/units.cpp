@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/core/units.h"
+#include "core/units.h"
 
 #include <fmt/format.h>
 

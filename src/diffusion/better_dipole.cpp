@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/better_dipole.h"
+#include "diffusion/better_dipole.h"
 
 #include <cmath>
 #include <numbers>
 
 #include "diffusion/find_radius.h"
-#include "opaline/transport/fresnel.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

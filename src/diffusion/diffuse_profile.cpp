@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/diffuse_profile.h"
+#include "diffusion/diffuse_profile.h"
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
@@ -9,7 +9,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "opaline/transport/fresnel.h"
+#include "scene/scene_properties.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

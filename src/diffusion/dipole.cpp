@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/dipole.h"
+#include "diffusion/dipole.h"
 
 #include <algorithm>
 #include <boost/math/special_functions/lambert_w.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "opaline/transport/fresnel.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

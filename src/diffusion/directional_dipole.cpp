@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/directional_dipole.h"
+#include "diffusion/directional_dipole.h"
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/smooth_boundary.h"
+#include "transport/fresnel.h"
+#include "transport/half_space.h"
+#include "transport/smooth_boundary.h"
 
 namespace opaline {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/kernel_table.h"
+#include "diffusion/kernel_table.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "opaline/diffusion/interpolating_cubic.h"
+#include "diffusion/interpolating_cubic.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/multipole.h"
+#include "diffusion/multipole.h"
 
 #include <algorithm>
 #include <boost/math/special_functions/bessel.hpp>
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "diffusion/find_radius.h"
-#include "opaline/transport/fresnel.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/normalized_diffusion.h"
+#include "diffusion/normalized_diffusion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "opaline/transport/half_space.h"
+#include "transport/half_space.h"
 
 namespace opaline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/radial_table.h"
+#include "diffusion/radial_table.h"
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/slab_walks.h"
+#include "diffusion/slab_walks.h"
 
 #include <cmath>
 
-#include "opaline/core/random.h"
-#include "opaline/transport/fresnel.h"
+#include "core/random.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/diffusion/table_profile.h"
+#include "diffusion/table_profile.h"
 
 #include <cmath>
 

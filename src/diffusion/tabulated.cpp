@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From rings of random walks to a smooth table.
-#include "opaline/diffusion/tabulated.h"
+#include "diffusion/tabulated.h"
 
 #include <tbb/task_arena.h>
 
@@ -14,10 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/laboratory.h"
-#include "opaline/transport/point_source.h"
+#include "transport/fresnel.h"
+#include "transport/half_space.h"
+#include "transport/laboratory.h"
+#include "transport/point_source.h"
 
 namespace opaline {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "exitance/query_order.h"
 #include "exitance/simd/lane_kernels.h"
-#include "opaline/exitance/evaluate.h"
+#include "exitance/evaluate.h"
 
 namespace opaline {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/exitance/cloud_error.h"
+#include "exitance/cloud_error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/parallel.h"
+#include "core/random.h"
 #include "exitance/near_samples.h"
 #include "exitance/point_sums.h"
-#include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
-#include "opaline/exitance/refined_stake.h"
-#include "opaline/sampling/sample_surface.h"
+#include "exitance/refined_stake.h"
+#include "sampling/sample_surface.h"
 
 namespace opaline {
 namespace {

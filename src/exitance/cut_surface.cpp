@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "opaline/exitance/surface_patch.h"
+#include "exitance/surface_patch.h"
 
 namespace opaline {
 namespace {

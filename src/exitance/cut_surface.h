@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/exitance/surface_cache.h"
+#include "exitance/surface_cache.h"
 
 namespace opaline {
 

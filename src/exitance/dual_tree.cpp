@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/parallel.h"
 #include "exitance/chunk_packets.h"
-#include "opaline/core/parallel.h"
 
 namespace opaline {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "opaline/exitance/evaluate.h"
+#include "exitance/evaluate.h"
 
 namespace opaline {
 

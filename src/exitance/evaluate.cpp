@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/exitance/evaluate.h"
+#include "exitance/evaluate.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "core/parallel.h"
 #include "exitance/dual_tree.h"
 #include "exitance/far_side.h"
 #include "exitance/gather.h"
 #include "exitance/simd/lane_table.h"
-#include "opaline/core/parallel.h"
 
 namespace opaline {
 namespace {

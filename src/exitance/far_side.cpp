@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/core/parallel.h"
-#include "opaline/sampling/sample_surface.h"
+#include "core/parallel.h"
+#include "sampling/sample_surface.h"
 
 namespace opaline {
 namespace {

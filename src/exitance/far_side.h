@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "opaline/exitance/evaluate.h"
+#include "exitance/evaluate.h"
 
 namespace opaline {
 

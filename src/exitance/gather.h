@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "exitance/evaluate.h"
 #include "exitance/point_sums.h"
-#include "opaline/exitance/evaluate.h"
-#include "opaline/sampling/sample_surface.h"
+#include "sampling/sample_surface.h"
 
 namespace opaline {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "core/random.h"
 #include "exitance/cut_surface.h"
-#include "opaline/core/random.h"
-#include "opaline/exitance/surface_patch.h"
+#include "exitance/surface_patch.h"
 
 namespace opaline {
 namespace {

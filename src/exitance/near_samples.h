@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "opaline/exitance/octree.h"
+#include "exitance/octree.h"
 
 namespace opaline {
 

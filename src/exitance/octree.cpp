@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/exitance/octree.h"
+#include "exitance/octree.h"
 
 #include <tbb/parallel_sort.h>
 
@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/cancel_check.h"
-#include "opaline/core/morton.h"
-#include "opaline/core/parallel.h"
+#include "core/morton.h"
+#include "core/parallel.h"
 
 namespace opaline {
 namespace {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/exitance/evaluate.h"
+#include "exitance/evaluate.h"
 
 namespace opaline {
 

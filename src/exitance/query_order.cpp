@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/morton.h"
 #include "exitance/simd/lanes.h"
-#include "opaline/core/morton.h"
 
 namespace opaline {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/exitance/evaluate.h"
+#include "exitance/evaluate.h"
 
 namespace opaline {
 

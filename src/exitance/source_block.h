@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "exitance/octree.h"
 #include "exitance/simd/lanes.h"
-#include "opaline/exitance/octree.h"
 
 namespace opaline {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Interpolation between the nodes of a surface cache.
-#include "opaline/exitance/surface_cache.h"
+#include "exitance/surface_cache.h"
 
-#include "opaline/exitance/surface_patch.h"
+#include "exitance/surface_patch.h"
 
 namespace opaline {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "geometry/source_mesh.h"
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

@@ -9,7 +9,7 @@
 #include "geometry/repair_mesh.h"
 #include "geometry/topology.h"
 #include "geometry/vertex_normals.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
+#include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
 #include "geometry/source_mesh.h"
-#include "opaline/geometry/mesh.h"
 
 namespace opaline {
 

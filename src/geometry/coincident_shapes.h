@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "opaline/geometry/world.h"
+#include "geometry/world.h"
 
 namespace opaline {
 

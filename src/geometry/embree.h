@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <span>
 
-#include "opaline/geometry/ray_scene.h"
+#include "geometry/ray_scene.h"
 
 namespace opaline {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/embree.h"
-#include "opaline/geometry/ray_scene.h"
+#include "geometry/ray_scene.h"
 
 namespace opaline {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/geometry/line_query.h"
+#include "geometry/line_query.h"
 
 #include <algorithm>
 
+#include "core/parallel.h"
 #include "geometry/embree_handles.h"
-#include "opaline/core/parallel.h"
 
 namespace opaline {
 

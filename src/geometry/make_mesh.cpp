@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/geometry/make_mesh.h"
+#include "geometry/make_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "geometry/check_mesh.h"
 #include "geometry/read_mesh.h"
 #include "geometry/shape_label.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/geometry/mesh.h"
+#include "geometry/mesh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/geometry/nearest_surface.h"
+#include "geometry/nearest_surface.h"
 
 #include <cmath>
 #include <limits>
 #include <tuple>
 
+#include "core/parallel.h"
 #include "geometry/embree_handles.h"
 #include "geometry/nearest_on_triangle.h"
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
+#include "opaline/error.h"
 
 namespace opaline {
 NearestSurface::NearestSurface(const RayScene& rays, std::span<const std::uint32_t> meshes)

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "opaline/geometry/surface_point.h"
+#include "geometry/surface_point.h"
 
 namespace opaline {
 

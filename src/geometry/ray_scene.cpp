@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/geometry/ray_scene.h"
+#include "geometry/ray_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,11 @@
 #include <cstddef>
 #include <ctime>
 
+#include "core/parallel.h"
 #include "geometry/embree_handles.h"
 #include "geometry/oriented_point.h"
 #include "geometry/ray_offset.h"
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

@@ -3,14 +3,14 @@
 
 #include <filesystem>
 
+#include "core/input_file.h"
+#include "core/machine_memory.h"
 #include "geometry/formats/mesh_format.h"
+#include "geometry/mesh_file.h"
 #include "geometry/topology.h"
-#include "opaline/core/error.h"
-#include "opaline/core/input_file.h"
-#include "opaline/core/machine_memory.h"
-#include "opaline/geometry/mesh_file.h"
-#include "opaline/scene/nearest_name.h"
-#include "opaline/scene/unread_format.h"
+#include "opaline/error.h"
+#include "scene/unread_format.h"
+#include "values/nearest_name.h"
 
 namespace opaline {
 namespace {

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "geometry/source_mesh.h"
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "opaline/core/vec3.h"
-#include "opaline/geometry/mesh.h"
+#include "geometry/mesh.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 

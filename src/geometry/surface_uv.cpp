@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/geometry/surface_uv.h"
+#include "geometry/surface_uv.h"
 
 namespace opaline {
 

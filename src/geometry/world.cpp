@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/geometry/world.h"
+#include "geometry/world.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,11 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/mesh.h"
 #include "geometry/shape_label.h"
-#include "opaline/core/error.h"
-#include "opaline/geometry/mesh.h"
+#include "opaline/error.h"
+#include "scene/scene_properties.h"
+#include "scene/source_place.h"
 
 namespace opaline {
 namespace {

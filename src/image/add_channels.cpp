@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/image/add_channels.h"
+#include "image/add_channels.h"
 
 #include <algorithm>
 
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

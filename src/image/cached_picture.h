@@ -7,7 +7,7 @@
 #include <string>
 
 #include "image/picture_bytes.h"
-#include "opaline/image/texture_file.h"
+#include "image/texture_file.h"
 
 namespace opaline {
 

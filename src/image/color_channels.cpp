@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/lower_case.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

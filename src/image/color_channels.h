@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "opaline/core/rgb_primaries.h"
+#include "core/rgb_primaries.h"
 
 namespace opaline {
 

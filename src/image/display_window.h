@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/image/error_picture.h"
+#include "image/error_picture.h"
 
 #include <OpenImageIO/color.h>
 

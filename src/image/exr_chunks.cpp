@@ -14,7 +14,7 @@
 #include <exception>
 #include <vector>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers of formulas and all constants are those of Andersson et al. 2020.
-#include "opaline/image/flip.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
-#include "opaline/core/vec3.h"
+#include "core/parallel.h"
+#include "opaline/compare.h"
+#include "opaline/error.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 namespace {

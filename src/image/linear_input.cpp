@@ -9,7 +9,7 @@
 #include <map>
 #include <mutex>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

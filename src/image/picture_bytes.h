@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "opaline/core/input_file.h"
+#include "core/input_file.h"
 
 namespace opaline {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "image/png_chunks.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -12,8 +12,8 @@
 #include "image/exr_chunks.h"
 #include "image/picture_file.h"
 #include "image/texel_colors.h"
-#include "opaline/core/error.h"
-#include "opaline/image/image.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 
 namespace opaline {
 

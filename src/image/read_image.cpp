@@ -3,8 +3,8 @@
 
 #include "image/picture_module.h"
 #include "image/picture_reader.h"
-#include "opaline/core/error.h"
-#include "opaline/image/image.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

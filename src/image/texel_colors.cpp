@@ -6,8 +6,8 @@
 #include <sstream>
 #include <utility>
 
-#include "opaline/core/error.h"
-#include "opaline/core/srgb.h"
+#include "core/srgb.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
+#include "core/rgb_primaries.h"
 #include "image/texel_layout.h"
-#include "opaline/core/rgb_primaries.h"
-#include "opaline/image/texture_file.h"
+#include "image/texture_file.h"
 
 namespace opaline {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "image/display_window.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

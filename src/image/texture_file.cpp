@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/image/texture_file.h"
+#include "image/texture_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "asset_files/gltf_image.h"
 #include "image/cached_picture.h"
 #include "image/picture_module.h"
-#include "opaline/assets/gltf_image.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>

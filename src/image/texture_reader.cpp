@@ -9,14 +9,14 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/machine_memory.h"
 #include "image/cached_picture.h"
 #include "image/exr_chunks.h"
 #include "image/linear_input.h"
 #include "image/picture_file.h"
 #include "image/texel_colors.h"
 #include "image/texel_layout.h"
-#include "opaline/core/error.h"
-#include "opaline/core/machine_memory.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/image/view_transform.h"
+#include "image/view_transform.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/core/rgb_primaries.h"
+#include "core/rgb_primaries.h"
 
 namespace opaline {
 namespace {

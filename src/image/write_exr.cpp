@@ -19,11 +19,11 @@
 #include <system_error>
 #include <utility>
 
+#include "core/atomic_file.h"
+#include "core/parallel.h"
 #include "image/color_channels.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
-#include "opaline/image/picture_layers.h"
+#include "image/picture_layers.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

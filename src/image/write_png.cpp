@@ -8,12 +8,12 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/atomic_file.h"
+#include "core/parallel.h"
 #include "image/png_chunks.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
-#include "opaline/image/image.h"
-#include "opaline/image/view_transform.h"
+#include "image/view_transform.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

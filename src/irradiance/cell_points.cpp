@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "opaline/core/random.h"
+#include "core/random.h"
 
 namespace opaline {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/geometry/ray_scene.h"
-#include "opaline/sampling/sample_surface.h"
+#include "geometry/ray_scene.h"
+#include "sampling/sample_surface.h"
 
 namespace opaline {
 

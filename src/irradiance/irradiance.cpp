@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/irradiance/irradiance.h"
+#include "irradiance/irradiance.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
+#include "core/parallel.h"
+#include "irradiance/sample_key.h"
 #include "irradiance/shadow_batch.h"
 #include "irradiance/shadow_edges.h"
-#include "opaline/core/parallel.h"
-#include "opaline/irradiance/sample_key.h"
-#include "opaline/lights/light.h"
+#include "lights/light.h"
 
 namespace opaline {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/sampling/sample_surface.h"
+#include "sampling/sample_surface.h"
 
 namespace opaline {
 

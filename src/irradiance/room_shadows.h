@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/lights/environment_picture.h"
+#include "lights/environment_picture.h"
 
 namespace opaline {
 

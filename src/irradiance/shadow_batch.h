@@ -10,14 +10,14 @@
 #include <span>
 #include <vector>
 
+#include "core/morton.h"
+#include "core/random.h"
+#include "geometry/ray_scene.h"
 #include "irradiance/room_shadows.h"
 #include "lights/environment_sample.h"
-#include "opaline/core/morton.h"
-#include "opaline/core/random.h"
-#include "opaline/geometry/ray_scene.h"
-#include "opaline/lights/light_tree.h"
-#include "opaline/lights/shared_rays.h"
-#include "opaline/transport/fresnel.h"
+#include "lights/light_tree.h"
+#include "lights/shared_rays.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 

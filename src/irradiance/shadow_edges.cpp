@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/parallel.h"
 #include "irradiance/cell_points.h"
 #include "irradiance/neighbour_grid.h"
 #include "irradiance/shadow_batch.h"
-#include "opaline/core/parallel.h"
 
 namespace opaline {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/irradiance/irradiance.h"
+#include "irradiance/irradiance.h"
 
 namespace opaline {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "opaline/lights/light_tree.h"
+#include "lights/light_tree.h"
 
 namespace opaline {
 

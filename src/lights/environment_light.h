@@ -6,8 +6,8 @@
 
 #include "lights/environment_sample.h"
 #include "lights/light_kind.h"
-#include "opaline/core/error.h"
-#include "opaline/scene/source_place.h"
+#include "opaline/error.h"
+#include "scene/source_place.h"
 
 namespace opaline {
 

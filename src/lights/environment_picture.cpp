@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/lights/environment_picture.h"
+#include "lights/environment_picture.h"
 
 #include <fmt/format.h>
 
@@ -14,12 +14,12 @@
 #include <numeric>
 #include <utility>
 
+#include "core/random.h"
 #include "image/color_channels.h"
 #include "image/display_window.h"
 #include "lights/cumulative_shares.h"
-#include "opaline/core/error.h"
-#include "opaline/core/random.h"
-#include "opaline/image/image.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

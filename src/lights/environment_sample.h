@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "opaline/lights/environment_picture.h"
-#include "opaline/lights/light.h"
+#include "lights/environment_picture.h"
+#include "lights/light.h"
 
 namespace opaline {
 

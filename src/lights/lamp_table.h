@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/lights/light.h"
+#include "lights/light.h"
 
 namespace opaline {
 

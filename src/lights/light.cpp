@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/lights/light.h"
+#include "lights/light.h"
 
+#include "core/random.h"
 #include "lights/all_lights.h"
-#include "opaline/core/random.h"
-#include "opaline/lights/shared_rays.h"
+#include "lights/shared_rays.h"
 
 namespace opaline {
 namespace {

@@ -17,9 +17,9 @@
 #include <optional>
 #include <vector>
 
-#include "opaline/lights/light.h"
-#include "opaline/scene/schema.h"
-#include "opaline/scene/value.h"
+#include "lights/light.h"
+#include "values/key_info.h"
+#include "values/value.h"
 
 namespace opaline {
 

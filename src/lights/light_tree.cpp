@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/lights/light_tree.h"
+#include "lights/light_tree.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 
+#include "core/random.h"
 #include "lights/build_light_tree.h"
 #include "lights/lamp_table.h"
-#include "opaline/core/random.h"
 
 namespace opaline {
 namespace {

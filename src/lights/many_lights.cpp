@@ -4,7 +4,7 @@
 #include <array>
 
 #include "lights/build_light_tree.h"
-#include "opaline/lights/light_tree.h"
+#include "lights/light_tree.h"
 
 namespace opaline {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "lights/light_kind.h"
-#include "opaline/lights/light_tree.h"
+#include "lights/light_tree.h"
 
 namespace opaline {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "lights/cumulative_shares.h"
-#include "opaline/lights/environment_picture.h"
-#include "opaline/lights/light.h"
+#include "lights/environment_picture.h"
+#include "lights/light.h"
 
 namespace opaline {
 namespace {

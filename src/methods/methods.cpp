@@ -2,6 +2,7 @@
 // The one list of methods.
 #include <array>
 
+#include "bodies/surface_textures.h"
 #include "methods/direct/direct_method.h"
 #include "methods/hierarchical/hierarchical_method.h"
 #include "methods/lambert/lambert_method.h"
@@ -19,6 +20,10 @@ const SubsurfaceMethod& method_of(Method method) {
   static const std::array<const SubsurfaceMethod*, kMethodNames.size()> kAll{&hierarchical, &lambert, &direct,
                                                                              &volume, &volume_diffusion};
   return *kAll[std::size_t(method)];
+}
+
+bool follows_textures_inside(Method method) {
+  return method_of(method).follows_textures_inside();
 }
 
 std::vector<RgbF> radiant_exitance(const Body& body, const World& world, std::span<const Vec3d> points,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "opaline/quality/target_error.h"
-#include "opaline/scene/names.h"
+#include "quality/target_error.h"
+#include "scene/names.h"
 
 namespace opaline {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "opaline/core/stopwatch.h"
-#include "opaline/quality/time_budget.h"
+#include "core/stopwatch.h"
 #include "quality/picture_cost.h"
+#include "quality/time_budget.h"
 
 namespace opaline {
 namespace {

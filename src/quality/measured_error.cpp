@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/quality/measured_error.h"
+#include "quality/measured_error.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/image/metrics.h"
-#include "opaline/render/direct.h"
+#include "methods/direct/direct.h"
+#include "opaline/compare.h"
 #include "quality/probe.h"
 
 namespace opaline {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <thread>
 
-#include "opaline/core/stopwatch.h"
-#include "opaline/image/metrics.h"
-#include "opaline/render/shade_parts.h"
+#include "core/stopwatch.h"
+#include "opaline/compare.h"
 #include "quality/probe.h"
+#include "render/shade_parts.h"
 
 namespace opaline {
 namespace {

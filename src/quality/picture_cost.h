@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "opaline/quality/time_budget.h"
 #include "quality/settings_search.h"
+#include "quality/time_budget.h"
 
 namespace opaline {
 

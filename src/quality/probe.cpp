@@ -5,8 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "opaline/core/random.h"
-#include "opaline/image/metrics.h"
+#include "core/random.h"
+#include "opaline/compare.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 namespace {

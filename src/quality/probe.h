@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 
 namespace opaline {
 

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/stopwatch.h"
 #include "methods/hierarchical/hierarchical_state.h"
-#include "opaline/core/stopwatch.h"
 #include "quality/probe.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 namespace {

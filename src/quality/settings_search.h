@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 
 namespace opaline {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/quality/target_error.h"
+#include "quality/target_error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "opaline/lights/light.h"
+#include "lights/light.h"
 #include "quality/probe.h"
 #include "quality/settings_search.h"
 

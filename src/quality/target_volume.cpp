@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "opaline/lights/light.h"
-#include "opaline/quality/target_error.h"
-#include "opaline/volume/volume_diffusion.h"
+#include "lights/light.h"
 #include "quality/probe.h"
 #include "quality/settings_search.h"
+#include "quality/target_error.h"
+#include "volume/volume_diffusion.h"
 
 namespace opaline {
 namespace {

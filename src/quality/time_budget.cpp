@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/quality/time_budget.h"
+#include "quality/time_budget.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "opaline/core/stopwatch.h"
+#include "core/stopwatch.h"
 #include "quality/picture_cost.h"
 #include "quality/probe.h"
 #include "quality/settings_search.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/quality/trade.h"
+#include "quality/trade.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "opaline/core/stopwatch.h"
+#include "core/stopwatch.h"
 #include "quality/picture_cost.h"
 #include "quality/probe.h"
 #include "quality/settings_search.h"

@@ -8,12 +8,12 @@
 #include <numbers>
 #include <optional>
 
-#include "opaline/geometry/surface_point.h"
-#include "opaline/scene/scene.h"
-#include "opaline/transport/angular_exit.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/rough_boundary.h"
-#include "render/hit_textures.h"
+#include "geometry/surface_point.h"
+#include "opaline/scene.h"
+#include "subsurface/hit_textures.h"
+#include "transport/angular_exit.h"
+#include "transport/fresnel.h"
+#include "transport/rough_boundary.h"
 
 namespace opaline {
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
+#include "core/parallel.h"
+#include "core/random.h"
 
 namespace opaline {
 namespace {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "bodies/body.h"
 #include "render/camera_rays.h"
 #include "render/gathered_light.h"
 #include "render/shade.h"
@@ -69,6 +70,12 @@ class BouncedPlaces {
   std::vector<Lattice> lattices_;  // each with half the spacing of the last, where necessary
   std::size_t chunks_ = 0;         // chunks of gathered cache points
 };
+
+/// Irradiance at each body's samples from surfaces: translucent ones from their trees, opaque ones under
+/// direct light; one list per body. view: cache with HeldView::at_samples for the same samples, extended; or
+/// null
+std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
+                                                  HeldView* view = nullptr);
 
 /// Indirect light at the hits of an image: from RenderInput::bounced, or from a cache of its own. Hits
 /// without a usable cache point, as at silhouettes, gather rays themselves, with a second bounce if the

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/core/random.h"
+#include "core/random.h"
 
 namespace opaline {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "opaline/geometry/ray_scene.h"
-#include "opaline/scene/scene.h"
+#include "geometry/ray_scene.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

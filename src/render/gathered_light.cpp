@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/core/random.h"
-#include "opaline/transport/fresnel.h"
+#include "core/random.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "opaline/render/held_view.h"
 #include "render/shade.h"
+#include "subsurface/held_view.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/render/mattes.h"
+#include "render/mattes.h"
 
 #include <fmt/format.h>
 #include <murmurhash.h>
@@ -9,9 +9,9 @@
 #include <bit>
 #include <nlohmann/json.hpp>
 
-#include "opaline/core/parallel.h"
-#include "opaline/image/add_channels.h"
-#include "opaline/lights/light.h"
+#include "core/parallel.h"
+#include "image/add_channels.h"
+#include "lights/light.h"
 #include "render/camera_rays.h"
 #include "render/tile_renderer.h"
 

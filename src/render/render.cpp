@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/render/render.h"
+#include "render/render.h"
 
 #include <atomic>
 #include <optional>
 
-#include "methods/method.h"
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 #include "render/bounced_light.h"
 #include "render/tile_renderer.h"
+#include "scene/scene_properties.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

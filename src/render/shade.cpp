@@ -6,12 +6,12 @@
 #include <map>
 #include <utility>
 
-#include "methods/method.h"
-#include "opaline/core/random.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/shared_roughness.h"
+#include "core/random.h"
 #include "render/bounced_light.h"
 #include "render/camera_rays.h"
+#include "subsurface/method.h"
+#include "transport/fresnel.h"
+#include "transport/shared_roughness.h"
 
 namespace opaline {
 namespace {
@@ -100,12 +100,12 @@ std::vector<SurfacePoint> points_of(std::span<const TracedRay> traced, const Ray
 
 }  // namespace
 
-Shader::Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers)
+Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
     : input_(input),
       lights_(recentred_lights(input.scene, input.world)),
       textures_(input.scene, input.world),
       pixel_spread_(camera_ray_spread(input.scene)),
-      fields_(make_fields(input, textures_, entry_samplers)) {
+      fields_(make_fields(input, textures_, sources)) {
   if (input.view != nullptr) {
     std::vector<float> eta;
     for (const std::unique_ptr<Field>& field : fields_.all) eta.push_back(field->eta());

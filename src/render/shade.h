@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "opaline/irradiance/irradiance.h"
-#include "opaline/lights/light.h"
-#include "opaline/render/layers.h"
-#include "opaline/render/render.h"
+#include "irradiance/irradiance.h"
+#include "lights/light.h"
 #include "render/appearance.h"
 #include "render/fields/make_fields.h"
+#include "render/layers.h"
+#include "render/render.h"
 
 namespace opaline {
 
@@ -19,8 +19,8 @@ class BouncedLight;
 
 class Shader {
  public:
-  /// entry_samplers: of Method::direct, one per group.
-  explicit Shader(const RenderInput& input, std::span<const EntrySampler> entry_samplers = {});
+  /// sources: fields of meshes without a body; must outlive it
+  explicit Shader(const RenderInput& input, std::span<const FieldSource> sources = {});
 
   /// Shades a batch of traced camera rays, one PixelSample per ray; returns the number of exitance queries.
   /// in    keys: random-number keys of the rays' light samples; held: cached light transport of the batch,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/render/shade_parts.h"
+#include "render/shade_parts.h"
 
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 #include "render/tile_renderer.h"
 
 namespace opaline {

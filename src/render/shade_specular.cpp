@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/random.h"
+#include "irradiance/sample_key.h"
 #include "lights/environment_sample.h"
-#include "opaline/core/random.h"
-#include "opaline/irradiance/sample_key.h"
 #include "render/shade.h"
 
 namespace opaline {

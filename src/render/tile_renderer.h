@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "opaline/render/layers.h"
-#include "opaline/render/render.h"
-#include "opaline/render/shade_parts.h"
 #include "render/camera_rays.h"
+#include "render/layers.h"
+#include "render/render.h"
 #include "render/shade.h"
+#include "render/shade_parts.h"
 
 namespace opaline {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/sampling/carry_samples.h"
+#include "sampling/carry_samples.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 
-#include "opaline/core/parallel.h"
-#include "opaline/geometry/surface_point.h"
+#include "core/parallel.h"
+#include "geometry/surface_point.h"
 #include "sampling/cell_parts.h"
 #include "sampling/stretched_cloud.h"
 

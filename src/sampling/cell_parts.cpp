@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 
 namespace opaline {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/sampling/surface_cells.h"
+#include "sampling/surface_cells.h"
 #include "sampling/surface_shares.h"
 
 namespace opaline {

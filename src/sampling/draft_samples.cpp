@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/sampling/draft_samples.h"
+#include "sampling/draft_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <tuple>
 
 #include "core/cancel_check.h"
-#include "opaline/core/morton.h"
-#include "opaline/core/random.h"
-#include "opaline/geometry/surface_point.h"
+#include "core/morton.h"
+#include "core/random.h"
+#include "geometry/surface_point.h"
 
 namespace opaline {
 namespace {

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/core/monitor.h"
-#include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
-#include "opaline/sampling/sample_surface.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "opaline/monitor.h"
 #include "sampling/sample_grid.h"
+#include "sampling/sample_surface.h"
 #include "sampling/triangle_list.h"
 
 namespace opaline {

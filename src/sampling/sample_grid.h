@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/core/morton.h"
-#include "opaline/core/parallel.h"
-#include "opaline/core/vec3.h"
+#include "core/morton.h"
+#include "core/parallel.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 

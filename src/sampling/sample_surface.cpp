@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/sampling/sample_surface.h"
+#include "sampling/sample_surface.h"
 
 #include <tbb/parallel_sort.h>
 
@@ -7,9 +7,9 @@
 #include <tuple>
 
 #include "core/cancel_check.h"
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
-#include "opaline/geometry/surface_point.h"
+#include "core/parallel.h"
+#include "geometry/surface_point.h"
+#include "opaline/error.h"
 #include "sampling/cell_parts.h"
 #include "sampling/poisson_disk.h"
 

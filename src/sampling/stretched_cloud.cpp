@@ -6,9 +6,9 @@
 #include <bit>
 #include <unordered_map>
 
-#include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
-#include "opaline/sampling/sample_surface.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "sampling/sample_surface.h"
 
 namespace opaline {
 namespace {

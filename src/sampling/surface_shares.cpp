@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
-#include "opaline/core/parallel.h"
-#include "opaline/sampling/sample_surface.h"
+#include "core/parallel.h"
+#include "sampling/sample_surface.h"
 #include "sampling/share_tasks.h"
 #include "sampling/triangle_divider.h"
 

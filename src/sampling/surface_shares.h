@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 #include "sampling/sample_grid.h"
 #include "sampling/triangle_list.h"
 

@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "opaline/core/monitor.h"
-#include "opaline/sampling/sample_surface.h"
+#include "opaline/monitor.h"
 #include "sampling/convex_polygon.h"
 #include "sampling/needle_piece.h"
 #include "sampling/owners.h"
 #include "sampling/sample_grid.h"
+#include "sampling/sample_surface.h"
 #include "sampling/share_tasks.h"
 #include "sampling/triangle_list.h"
 

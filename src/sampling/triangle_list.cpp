@@ -8,9 +8,9 @@
 #include <numeric>
 #include <tuple>
 
-#include "opaline/core/morton.h"
-#include "opaline/core/parallel.h"
-#include "opaline/geometry/surface_point.h"
+#include "core/morton.h"
+#include "core/parallel.h"
+#include "geometry/surface_point.h"
 
 namespace opaline {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/geometry/world.h"
+#include "geometry/world.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/scene/source_place.h"
+#include "scene/source_place.h"
 
 namespace opaline {
 

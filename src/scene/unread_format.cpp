@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/scene/unread_format.h"
+#include "scene/unread_format.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/session/light_groups.h"
+#include "session/light_groups.h"
 
 #include <algorithm>
 #include <array>
@@ -7,12 +7,12 @@
 #include <cmath>
 #include <span>
 
-#include "methods/method.h"
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
-#include "opaline/image/add_channels.h"
-#include "opaline/lights/light.h"
-#include "opaline/scene/names.h"
+#include "core/parallel.h"
+#include "image/add_channels.h"
+#include "lights/light.h"
+#include "opaline/error.h"
+#include "scene/names.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

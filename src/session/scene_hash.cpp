@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/session/scene_hash.h"
+#include "session/scene_hash.h"
 
 #include <OpenImageIO/hash.h>
 
 #include <filesystem>
 #include <set>
 
-#include "opaline/assets/import_asset.h"
-#include "opaline/core/error.h"
-#include "opaline/core/input_file.h"
-#include "opaline/geometry/mesh_file.h"
-#include "opaline/image/texture_file.h"
-#include "opaline/lights/environment_picture.h"
+#include "assets/import_asset.h"
+#include "core/input_file.h"
+#include "geometry/mesh_file.h"
+#include "image/texture_file.h"
+#include "lights/environment_picture.h"
+#include "opaline/error.h"
+#include "scene/scene_properties.h"
+#include "scene/source_place.h"
 
 namespace opaline {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/session/session.h"
+#include "opaline/session.h"
 
+#include <string>
 #include <utility>
 
 #include "session/session_state.h"
@@ -42,6 +43,16 @@ void Session::prepare(Monitor* monitor) {
 }
 RenderResult Session::render(Monitor* monitor) {
   return state_->render(monitor);
+}
+
+std::vector<RgbF> Session::radiant_exitance(std::size_t body, std::span<const Vec3d> points,
+                                            std::span<const Vec3f> normals) {
+  prepare();
+  const std::size_t count = bodies().size();
+  if (body >= count)
+    throw bad_file({}, "no such body", "an index below " + std::to_string(count), std::to_string(body));
+  require(points.size() == normals.size(), "every point has a normal");
+  return opaline::radiant_exitance(bodies()[body], world(), points, normals, scene().settings);
 }
 
 const Scene& Session::scene() const {

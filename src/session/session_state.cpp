@@ -8,7 +8,10 @@
 
 #include "core/cancel_check.h"
 #include "methods/hierarchical/surface_caches.h"
-#include "opaline/render/choose_models.h"
+#include "plan/choose_models.h"
+#include "plan/make_plan.h"
+#include "scene/scene_properties.h"
+#include "session/first_light.h"
 
 namespace opaline {
 namespace {

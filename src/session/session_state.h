@@ -2,10 +2,10 @@
 // Cached state of a session, and the update of each part of it after an edit.
 #pragma once
 
-#include "methods/method.h"
-#include "opaline/session/session.h"
-#include "session/body_keys.h"
+#include "session/session_records.h"
 #include "session/shape_key.h"
+#include "stages/body_keys.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 

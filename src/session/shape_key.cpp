@@ -6,7 +6,8 @@
 #include <ctime>
 #include <optional>
 
-#include "opaline/geometry/mesh_file.h"
+#include "geometry/mesh_file.h"
+#include "scene/source_place.h"
 
 namespace opaline {
 namespace {

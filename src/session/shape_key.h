@@ -5,8 +5,9 @@
 #include <map>
 #include <string>
 
-#include "opaline/cache/stage_key.h"
-#include "opaline/scene/scene.h"
+#include "cache/stage_key.h"
+#include "opaline/scene.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 

@@ -2,8 +2,9 @@
 // Indirect light: at the samples of bodies and at cache points of the image.
 #include <memory>
 
+#include "render/bounced_light.h"
 #include "session/session_state.h"
-#include "session/stage_codecs.h"
+#include "stages/stage_codecs.h"
 
 namespace opaline {
 namespace {

@@ -3,10 +3,10 @@
 // complete.
 #include <fmt/format.h>
 
-#include "opaline/render/surface_textures.h"
-#include "opaline/sampling/carry_samples.h"
+#include "bodies/surface_textures.h"
+#include "sampling/carry_samples.h"
 #include "session/session_state.h"
-#include "session/stage_codecs.h"
+#include "stages/stage_codecs.h"
 
 namespace opaline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/session/walk_file.h"
+#include "session/walk_file.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "opaline/core/error.h"
-#include "opaline/image/image.h"
-#include "render/sums_file.h"
+#include "image/sums_file.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/transport/angular_exit.h"
+#include "transport/angular_exit.h"
 
 #include <algorithm>
 
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/smooth_boundary.h"
+#include "transport/half_space.h"
+#include "transport/smooth_boundary.h"
 
 namespace opaline {
 namespace {

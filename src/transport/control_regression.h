@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/transport/laboratory.h"
+#include "transport/laboratory.h"
 
 namespace opaline {
 

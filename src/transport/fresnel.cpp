@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/transport/fresnel.h"
+#include "transport/fresnel.h"
 
 #include <boost/math/quadrature/gauss.hpp>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/transport/laboratory.h"
+#include "transport/laboratory.h"
 
 #include <cmath>
 #include <utility>
 
-#include "opaline/core/parallel.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/random_walk.h"
+#include "core/parallel.h"
+#include "transport/fresnel.h"
 #include "transport/laboratory_checks.h"
+#include "transport/random_walk.h"
 #include "transport/slab_tally.h"
 
 namespace opaline {

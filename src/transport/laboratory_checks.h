@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "opaline/transport/laboratory.h"
+#include "transport/laboratory.h"
 
 namespace opaline {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/transport/medium.h"
+#include "transport/medium.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

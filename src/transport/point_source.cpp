@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/transport/point_source.h"
+#include "transport/point_source.h"
 
 #include <boost/math/quadrature/exp_sinh.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

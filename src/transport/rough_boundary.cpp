@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/transport/rough_boundary.h"
+#include "transport/rough_boundary.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "opaline/core/random.h"
-#include "opaline/transport/fresnel.h"
+#include "core/random.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/transport/shared_roughness.h"
+#include "transport/shared_roughness.h"
 
 #include <map>
 #include <mutex>

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "opaline/transport/random_walk.h"
+#include "transport/random_walk.h"
 
 namespace opaline {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/core/parallel.h"
-#include "opaline/lights/light.h"
+#include "core/parallel.h"
+#include "lights/light.h"
 
 namespace opaline {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "opaline/image/image.h"
-#include "opaline/scene/scene.h"
+#include "opaline/image.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

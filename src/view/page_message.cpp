@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <span>
 
-#include "opaline/core/error.h"
-#include "opaline/scene/json_tree.h"
-#include "opaline/scene/nearest_name.h"
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
+#include "opaline/error.h"
+#include "values/json_tree.h"
+#include "values/nearest_name.h"
 
 namespace opaline {
 namespace {

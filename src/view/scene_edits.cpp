@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "core/log.h"
-#include "opaline/core/error.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/scene/schema.h"
+#include "input/load_scene.h"
+#include "input/schema.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
 #include "view/page_message.h"
 
 namespace opaline {

@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "opaline/core/error.h"
-#include "opaline/scene/json_tree.h"
+#include "opaline/error.h"
+#include "values/json_tree.h"
 
 namespace opaline {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "methods/volume/volume_state.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

@@ -13,10 +13,10 @@
 #include <thread>
 #include <vector>
 
-#include "opaline/image/metrics.h"
-#include "opaline/quality/target_error.h"
-#include "opaline/quality/trade.h"
-#include "opaline/render/direct.h"
+#include "methods/direct/direct.h"
+#include "opaline/compare.h"
+#include "quality/target_error.h"
+#include "quality/trade.h"
 #include "view/view_renderer.h"
 
 namespace opaline {

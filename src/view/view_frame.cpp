@@ -10,7 +10,7 @@
 #include <cstring>
 #include <vector>
 
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 
 namespace opaline {
 namespace {

@@ -6,14 +6,15 @@
 #include <cmath>
 #include <filesystem>
 
+#include "bodies/plan_texts.h"
 #include "core/log.h"
-#include "methods/method.h"
-#include "opaline/core/units.h"
-#include "opaline/render/expected_error.h"
-#include "opaline/render/plan_texts.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/scene/names.h"
-#include "opaline/scene/schema.h"
+#include "core/units.h"
+#include "input/load_scene.h"
+#include "input/schema.h"
+#include "plan/choose_models.h"
+#include "plan/expected_error.h"
+#include "scene/names.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 #include "view/scene_edits.h"
 #include "view/view_background.h"
 #include "view/view_renderer.h"

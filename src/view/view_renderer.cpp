@@ -5,14 +5,14 @@
 #include <cmath>
 #include <utility>
 
-#include "methods/method.h"
-#include "opaline/core/error.h"
-#include "opaline/core/machine_memory.h"
-#include "opaline/core/stopwatch.h"
-#include "opaline/core/units.h"
-#include "opaline/render/direct.h"
-#include "opaline/render/expected_error.h"
-#include "opaline/render/picture_warnings.h"
+#include "core/machine_memory.h"
+#include "core/stopwatch.h"
+#include "core/units.h"
+#include "methods/direct/direct.h"
+#include "opaline/error.h"
+#include "plan/expected_error.h"
+#include "plan/picture_warnings.h"
+#include "subsurface/method.h"
 #include "view/lit_anew.h"
 
 namespace opaline {

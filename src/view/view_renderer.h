@@ -15,8 +15,8 @@
 #include <thread>
 #include <vector>
 
-#include "opaline/core/monitor.h"
-#include "opaline/session/session.h"
+#include "opaline/monitor.h"
+#include "session/session_records.h"
 
 namespace opaline {
 

@@ -18,11 +18,12 @@
 #include <thread>
 #include <utility>
 
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
-#include "opaline/scene/json_tree.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/scene/names.h"
+#include "core/atomic_file.h"
+#include "input/load_scene.h"
+#include "opaline/error.h"
+#include "scene/names.h"
+#include "values/frame_name.h"
+#include "values/json_tree.h"
 #include "view/http_connection.h"
 #include "view/view_address.h"
 #include "view/view_background.h"

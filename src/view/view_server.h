@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 #include "view/scene_edits.h"
 
 namespace opaline {

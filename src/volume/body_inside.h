@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/geometry/ray_scene.h"
+#include "geometry/ray_scene.h"
 
 namespace opaline {
 

@@ -8,14 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "opaline/transport/random_walk.h"
-#include "opaline/volume/nearest_sample.h"
-#include "opaline/volume/volume_exitance.h"
+#include "transport/random_walk.h"
 #include "volume/body_inside.h"
 #include "volume/free_distance.h"
 #include "volume/light_entry.h"
 #include "volume/medium_voxels.h"
+#include "volume/nearest_sample.h"
 #include "volume/sphere_exits.h"
+#include "volume/volume_exitance.h"
 
 namespace opaline {
 

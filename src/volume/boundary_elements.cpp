@@ -9,9 +9,9 @@
 #include <tuple>
 
 #include "core/cancel_check.h"
+#include "core/parallel.h"
+#include "geometry/surface_point.h"
 #include "geometry/vertex_normals.h"
-#include "opaline/core/parallel.h"
-#include "opaline/geometry/surface_point.h"
 #include "volume/outer_surface.h"
 
 namespace opaline {

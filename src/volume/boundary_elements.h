@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "opaline/geometry/ray_scene.h"
-#include "opaline/geometry/world.h"
-#include "opaline/volume/cut_surface.h"
+#include "geometry/ray_scene.h"
+#include "geometry/world.h"
+#include "volume/cut_surface.h"
 #include "volume/inside_lines.h"
 
 namespace opaline {

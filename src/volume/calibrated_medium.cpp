@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "opaline/core/parallel.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/smooth_boundary.h"
+#include "core/parallel.h"
+#include "transport/half_space.h"
+#include "transport/smooth_boundary.h"
 
 namespace opaline {
 namespace {

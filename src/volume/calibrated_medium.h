@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/transport/medium.h"
+#include "transport/medium.h"
 
 namespace opaline {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/volume/cell_fit.h"
+#include "volume/cell_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/cancel_check.h"
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 
 namespace opaline {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "opaline/core/vec3.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 #include "volume/diffusion_solver.h"
 
 namespace opaline {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "opaline/volume/media_inside.h"
 #include "volume/first_collisions.h"
+#include "volume/media_inside.h"
 
 namespace opaline {
 

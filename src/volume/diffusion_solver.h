@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "opaline/core/monitor.h"
+#include "opaline/monitor.h"
 #include "volume/diffusion_grid.h"
 
 namespace opaline {

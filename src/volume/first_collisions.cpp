@@ -6,10 +6,10 @@
 #include <numbers>
 #include <optional>
 
-#include "opaline/core/random.h"
-#include "opaline/lights/light.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/smooth_boundary.h"
+#include "core/random.h"
+#include "lights/light.h"
+#include "transport/fresnel.h"
+#include "transport/smooth_boundary.h"
 
 namespace opaline {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "opaline/core/monitor.h"
-#include "opaline/irradiance/irradiance.h"
+#include "irradiance/irradiance.h"
+#include "opaline/monitor.h"
 #include "volume/boundary_elements.h"
 #include "volume/calibrated_medium.h"
 #include "volume/diffusion_grid.h"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "opaline/geometry/world.h"
+#include "geometry/world.h"
 
 namespace opaline {
 

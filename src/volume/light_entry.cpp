@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "opaline/core/morton.h"
-#include "opaline/lights/light.h"
+#include "core/morton.h"
+#include "lights/light.h"
 
 namespace opaline {
 namespace {

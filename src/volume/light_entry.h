@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "opaline/geometry/ray_scene.h"
-#include "opaline/scene/scene.h"
-#include "opaline/transport/walk_numbers.h"
+#include "geometry/ray_scene.h"
+#include "opaline/scene.h"
+#include "transport/walk_numbers.h"
 
 namespace opaline {
 

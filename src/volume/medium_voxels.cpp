@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 
 namespace opaline {
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "opaline/geometry/mesh.h"
-#include "opaline/volume/media_inside.h"
+#include "geometry/mesh.h"
+#include "volume/media_inside.h"
 
 namespace opaline {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/volume/nearest_sample.h"
+#include "volume/nearest_sample.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
 
-#include "opaline/geometry/surface_point.h"
+#include "geometry/surface_point.h"
 
 namespace opaline {
 namespace {

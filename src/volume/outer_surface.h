@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "opaline/geometry/line_query.h"
-#include "opaline/geometry/ray_scene.h"
+#include "geometry/line_query.h"
+#include "geometry/ray_scene.h"
 
 namespace opaline {
 

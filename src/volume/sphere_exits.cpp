@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/core/parallel.h"
-#include "opaline/transport/random_walk.h"
+#include "core/parallel.h"
+#include "transport/random_walk.h"
 
 namespace opaline {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "opaline/transport/walk_numbers.h"
+#include "transport/walk_numbers.h"
 
 namespace opaline {
 

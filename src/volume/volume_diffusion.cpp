@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/volume/volume_diffusion.h"
+#include "volume/volume_diffusion.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/volume/cut_outer_surface.h"
+#include "volume/cut_outer_surface.h"
 #include "volume/diffusion_body.h"
 
 namespace opaline {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/volume/volume_exitance.h"
+#include "volume/volume_exitance.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "opaline/core/parallel.h"
-#include "opaline/lights/light.h"
-#include "opaline/volume/walk_memory.h"
+#include "core/parallel.h"
+#include "lights/light.h"
 #include "volume/body_walks.h"
+#include "volume/walk_memory.h"
 
 namespace opaline {
 namespace {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "../core/scratch_folder.h"
-#include "opaline/assets/import_asset.h"
-#include "opaline/core/error.h"
-#include "opaline/geometry/make_mesh.h"
-#include "opaline/scene/load_scene.h"
+#include "assets/import_asset.h"
+#include "geometry/make_mesh.h"
+#include "input/load_scene.h"
+#include "opaline/error.h"
 
 namespace opaline::asset_test {
 

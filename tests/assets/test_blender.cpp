@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "asset_test.h"
-#include "opaline/image/image.h"
-#include "opaline/session/session.h"
+#include "opaline/image.h"
+#include "session/session_records.h"
 
 namespace opaline::asset_test {
 namespace {

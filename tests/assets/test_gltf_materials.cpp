@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "asset_test.h"
-#include "opaline/transport/rough_boundary.h"
+#include "transport/rough_boundary.h"
 
 namespace opaline::asset_test {
 namespace {

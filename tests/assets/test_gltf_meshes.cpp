@@ -2,7 +2,7 @@
 #include <array>
 
 #include "asset_test.h"
-#include "opaline/assets/gltf_part.h"
+#include "geometry/formats/gltf_part.h"
 #include "session/shape_key.h"
 
 namespace opaline::asset_test {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "asset_test.h"
-#include "opaline/geometry/world.h"
+#include "geometry/world.h"
 
 namespace opaline::asset_test {
 namespace {

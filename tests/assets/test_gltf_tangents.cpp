@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "asset_test.h"
-#include "opaline/render/surface_textures.h"
-#include "opaline/session/session.h"
+#include "bodies/surface_textures.h"
+#include "session/session_records.h"
 #include "support/pictures.h"
 
 namespace opaline::asset_test {

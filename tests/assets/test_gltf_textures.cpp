@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "asset_test.h"
-#include "opaline/image/texture_file.h"
+#include "image/texture_file.h"
+#include "scene/scene_properties.h"
 #include "support/pictures.h"
 
 namespace opaline::asset_test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "asset_test.h"
-#include "opaline/transport/rough_boundary.h"
+#include "transport/rough_boundary.h"
 
 namespace opaline::asset_test {
 namespace {

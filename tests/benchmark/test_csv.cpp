@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 #include "support/read_csv.h"
 namespace opaline {
 namespace {

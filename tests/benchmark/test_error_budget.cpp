@@ -5,7 +5,7 @@
 #include <set>
 
 #include "benchmark/error_budget.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
 
 namespace opaline {
 namespace {

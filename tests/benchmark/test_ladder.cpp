@@ -6,7 +6,7 @@
 #include <set>
 
 #include "benchmark/ladder.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
 
 namespace opaline {
 namespace {

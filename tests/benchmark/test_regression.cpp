@@ -8,7 +8,7 @@
 
 #include "benchmark/csv.h"
 #include "benchmark/regression.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 #include "report_test.h"
 
 namespace opaline {

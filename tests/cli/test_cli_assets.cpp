@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "../assets/asset_test.h"
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

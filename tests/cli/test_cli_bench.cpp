@@ -6,7 +6,7 @@
 #include <map>
 
 #include "csv_cell.h"
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

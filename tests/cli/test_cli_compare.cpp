@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

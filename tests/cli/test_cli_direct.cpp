@@ -2,7 +2,7 @@
 // `opaline render --method direct`: stopped and gone on with, and ended by its noise.
 #include <algorithm>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

@@ -2,7 +2,7 @@
 // Runs that end early: what is said, the exit code, and that the folder is as it was.
 #include <gtest/gtest.h>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

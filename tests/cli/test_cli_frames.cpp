@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

@@ -7,7 +7,7 @@
 #include <array>
 #include <filesystem>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

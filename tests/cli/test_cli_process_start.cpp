@@ -2,7 +2,7 @@
 // What a program is started with: closed descriptors, bounds on its files and its memory.
 #include <gtest/gtest.h>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

@@ -8,10 +8,10 @@
 #include <cstdio>
 
 #include "../benchmark/page_data.h"
-#include "opaline/scene/enumerations.h"
-#include "opaline/transport/fresnel.h"
+#include "opaline/enumerations.h"
 #include "run_program.h"
 #include "support/read_csv.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

@@ -2,7 +2,7 @@
 // `opaline render` with --target-error, --time-budget and --verify: what it says, and what it does not take.
 #include <algorithm>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 #include "run_program.h"
 
 namespace opaline {

@@ -2,9 +2,9 @@
 // `opaline render --method volume`: stopped and gone on with, and ended by its noise.
 #include <algorithm>
 
-#include "opaline/image/image.h"
-#include "opaline/session/walk_file.h"
+#include "opaline/image.h"
 #include "run_program.h"
+#include "session/walk_file.h"
 
 namespace opaline {
 namespace {

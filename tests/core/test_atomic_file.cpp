@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "opaline/core/atomic_file.h"
-#include "opaline/core/error.h"
+#include "core/atomic_file.h"
+#include "opaline/error.h"
 #include "scratch_folder.h"
 
 namespace opaline {

@@ -5,8 +5,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "opaline/core/error.h"
-#include "opaline/core/input_file.h"
+#include "core/input_file.h"
+#include "opaline/error.h"
 #include "scratch_folder.h"
 
 namespace opaline {

@@ -3,7 +3,7 @@
 
 #include <csignal>
 
-#include "opaline/core/interrupt.h"
+#include "core/interrupt.h"
 
 namespace opaline {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "opaline/core/machine_memory.h"
+#include "core/machine_memory.h"
 #include "scratch_folder.h"
 
 namespace opaline {

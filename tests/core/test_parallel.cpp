@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 
 namespace opaline {
 namespace {

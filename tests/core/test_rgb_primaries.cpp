@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "opaline/core/rgb_primaries.h"
+#include "core/rgb_primaries.h"
 
 namespace opaline {
 namespace {

@@ -2,7 +2,7 @@
 // Quantities as people read them.
 #include <gtest/gtest.h>
 
-#include "opaline/core/units.h"
+#include "core/units.h"
 
 namespace opaline {
 namespace {

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <variant>
 
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/transport/fresnel.h"
+#include "diffusion/diffuse_profile.h"
 #include "support/quadrature.h"
+#include "transport/fresnel.h"
 
 namespace opaline::test {
 

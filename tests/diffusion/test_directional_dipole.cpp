@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The directional dipole.
+#include "core/random.h"
 #include "diffusion/diffusion_test.h"
-#include "opaline/core/random.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/laboratory.h"
+#include "transport/half_space.h"
+#include "transport/laboratory.h"
 
 namespace opaline {
 namespace {

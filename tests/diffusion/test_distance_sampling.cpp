@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random distances of the profiles.
+#include "core/random.h"
+#include "diffusion/diffuse_profile.h"
 #include "diffusion/diffusion_test.h"
-#include "opaline/core/random.h"
-#include "opaline/diffusion/diffuse_profile.h"
 #include "support/statistics.h"
 
 namespace opaline {

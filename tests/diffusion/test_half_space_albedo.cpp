@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The exact albedo of a half space.
 #include "diffusion/diffusion_test.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/laboratory.h"
+#include "transport/fresnel.h"
+#include "transport/half_space.h"
+#include "transport/laboratory.h"
 
 namespace opaline {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "diffusion/diffusion_test.h"
-#include "opaline/diffusion/kernel_table.h"
+#include "diffusion/kernel_table.h"
 
 namespace opaline {
 namespace {

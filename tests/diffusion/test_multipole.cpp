@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The multipole profile.
 #include "diffusion/diffusion_test.h"
-#include "opaline/transport/laboratory.h"
+#include "transport/laboratory.h"
 
 namespace opaline {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The normalized diffusion profile.
 #include "diffusion/diffusion_test.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/laboratory.h"
+#include "transport/half_space.h"
+#include "transport/laboratory.h"
 
 namespace opaline {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "diffusion/diffusion_test.h"
-#include "scene/presets.h"
+#include "input/presets.h"
 
 namespace opaline {
 namespace {

@@ -2,8 +2,8 @@
 // Plates in diffuse light.
 #include <gtest/gtest.h>
 
-#include "opaline/diffusion/slab_walks.h"
-#include "opaline/transport/fresnel.h"
+#include "diffusion/slab_walks.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

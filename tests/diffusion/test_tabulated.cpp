@@ -3,9 +3,9 @@
 #include <bit>
 
 #include "diffusion/diffusion_test.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/laboratory.h"
-#include "opaline/transport/point_source.h"
+#include "transport/half_space.h"
+#include "transport/laboratory.h"
+#include "transport/point_source.h"
 
 namespace opaline {
 namespace {

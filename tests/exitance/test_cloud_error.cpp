@@ -2,7 +2,7 @@
 // The error that sums over samples expect of themselves, against the error that they have.
 #include <cmath>
 
-#include "opaline/exitance/cloud_error.h"
+#include "exitance/cloud_error.h"
 #include "support/clouds.h"
 
 namespace opaline {

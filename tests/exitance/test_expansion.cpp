@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The series in which far nodes reach a cluster of points, and who may be taken by it.
+#include "core/parallel.h"
 #include "exitance/simd/lane_kernels.h"
-#include "opaline/core/parallel.h"
 #include "support/clouds.h"
 
 namespace opaline {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One answer from every instruction set.
+#include "core/parallel.h"
 #include "exitance/simd/lane_kernels.h"
-#include "opaline/core/error.h"
-#include "opaline/core/parallel.h"
+#include "opaline/error.h"
 #include "support/clouds.h"
 
 namespace opaline {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The far kernel that vector registers look up, against the profile it is made from.
+#include "core/parallel.h"
 #include "exitance/simd/lane_kernels.h"
-#include "opaline/core/parallel.h"
 #include "support/clouds.h"
 
 namespace opaline {

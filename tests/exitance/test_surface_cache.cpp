@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "exitance/accuracy.h"
-#include "opaline/exitance/surface_cache.h"
+#include "exitance/surface_cache.h"
 #include "support/clouds.h"
 
 namespace opaline::test {

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 /// Tries one input; returns unless the program is at fault.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

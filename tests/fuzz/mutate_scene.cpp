@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
 
 namespace opaline::fuzz {
 namespace {

@@ -14,12 +14,12 @@
 #include <chrono>
 #include <cstring>
 
+#include "core/machine_memory.h"
 #include "fuzz_target.h"
+#include "input/load_scene.h"
+#include "methods/direct/direct.h"
 #include "mutate_scene.h"
-#include "opaline/core/machine_memory.h"
-#include "opaline/render/direct.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 
 namespace opaline::fuzz {
 namespace {

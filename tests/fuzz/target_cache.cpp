@@ -6,11 +6,12 @@
 #include "cache/content_hash.h"
 #include "cache/entry_header.h"
 #include "fuzz_target.h"
+#include "input/load_scene.h"
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/surface_caches.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
-#include "session/stage_codecs.h"
+#include "session/session_records.h"
+#include "stages/stage_codecs.h"
+#include "subsurface/method.h"
 
 namespace opaline::fuzz {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fuzz_target.h"
-#include "opaline/lights/environment_picture.h"
+#include "lights/environment_picture.h"
 
 namespace opaline::fuzz {
 

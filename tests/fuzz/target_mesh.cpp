@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fuzz_target.h"
-#include "opaline/geometry/make_mesh.h"
+#include "geometry/make_mesh.h"
 
 namespace opaline::fuzz {
 namespace {

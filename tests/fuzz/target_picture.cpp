@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The reader of EXR and PNG files: as pictures, layer by layer as they are compared, and as the sums of a direct rendering.
 #include "fuzz_target.h"
-#include "opaline/image/image.h"
-#include "opaline/image/metrics.h"
-#include "opaline/render/direct.h"
+#include "methods/direct/direct.h"
+#include "opaline/compare.h"
+#include "opaline/image.h"
 
 namespace opaline::fuzz {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scene reader: a scene's text, and after it a line "--set path=value" for each override.
 #include "fuzz_target.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/scene/schema.h"
+#include "input/load_scene.h"
+#include "input/schema.h"
 
 namespace opaline::fuzz {
 

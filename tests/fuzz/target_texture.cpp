@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fuzz_target.h"
-#include "opaline/image/texture_file.h"
+#include "image/texture_file.h"
 
 namespace opaline::fuzz {
 

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "../core/scratch_folder.h"
-#include "opaline/core/error.h"
-#include "opaline/geometry/make_mesh.h"
+#include "geometry/make_mesh.h"
+#include "opaline/error.h"
 
 namespace opaline::mesh_test {
 

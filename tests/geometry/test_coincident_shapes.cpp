@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Shapes that lie twice in one place are reported; shapes that only touch or enclose each other are not.
 #include "geometry/coincident_shapes.h"
+#include "geometry/world.h"
 #include "mesh_test.h"
-#include "opaline/geometry/world.h"
 
 namespace opaline {
 namespace {

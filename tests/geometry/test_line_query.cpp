@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "opaline/core/random.h"
-#include "opaline/geometry/line_query.h"
+#include "core/random.h"
+#include "geometry/line_query.h"
 #include "support/surfaces.h"
 
 namespace opaline {

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "mesh_test.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 namespace {

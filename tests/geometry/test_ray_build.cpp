@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Both ways to build the structure that rays walk.
+#include "core/random.h"
+#include "geometry/ray_scene.h"
 #include "mesh_test.h"
-#include "opaline/core/random.h"
-#include "opaline/geometry/ray_scene.h"
 #include "support/surfaces.h"
 
 namespace opaline {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is found wrong with a shape after its scene was read is said where the scene has the shape.
+#include "geometry/world.h"
+#include "input/load_scene.h"
 #include "mesh_test.h"
-#include "opaline/geometry/world.h"
-#include "opaline/scene/load_scene.h"
 
 namespace opaline {
 namespace {

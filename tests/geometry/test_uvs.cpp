@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
 
+#include "geometry/surface_uv.h"
 #include "mesh_test.h"
-#include "opaline/geometry/surface_uv.h"
+#include "scene/scene_properties.h"
 
 namespace opaline::mesh_test {
 namespace {

@@ -2,8 +2,8 @@
 // Colours at vertices, in the ways that mesh files have them.
 #include <cmath>
 
+#include "core/srgb.h"
 #include "mesh_test.h"
-#include "opaline/core/srgb.h"
 
 namespace opaline::mesh_test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Worlds that floats cannot carry are refused by name before a ray structure or samples are made of them.
+#include "geometry/ray_scene.h"
 #include "mesh_test.h"
-#include "opaline/geometry/ray_scene.h"
 
 namespace opaline {
 namespace {

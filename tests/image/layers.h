@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "opaline/image/metrics.h"
+#include "opaline/compare.h"
 
 namespace opaline {
 

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "../core/scratch_folder.h"
-#include "opaline/core/error.h"
-#include "opaline/image/image.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

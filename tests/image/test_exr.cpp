@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "../core/scratch_folder.h"
-#include "opaline/image/picture_layers.h"
+#include "image/picture_layers.h"
 
 namespace opaline {
 namespace {

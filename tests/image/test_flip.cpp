@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "layers.h"
-#include "opaline/image/flip.h"
+#include "opaline/compare.h"
 
 namespace opaline {
 namespace {

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "../core/scratch_folder.h"
-#include "opaline/image/image.h"
-#include "opaline/render/direct.h"
+#include "methods/direct/direct.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

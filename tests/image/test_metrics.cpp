@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
+#include "image/error_picture.h"
 #include "layers.h"
-#include "opaline/image/error_picture.h"
-#include "opaline/image/metrics.h"
+#include "opaline/compare.h"
 
 namespace opaline {
 namespace {

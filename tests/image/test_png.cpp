@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../core/scratch_folder.h"
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

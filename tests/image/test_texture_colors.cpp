@@ -6,11 +6,11 @@
 #include <algorithm>
 
 #include "../core/scratch_folder.h"
-#include "opaline/core/error.h"
-#include "opaline/core/rgb_primaries.h"
-#include "opaline/core/srgb.h"
-#include "opaline/image/image.h"
-#include "opaline/image/texture_file.h"
+#include "core/rgb_primaries.h"
+#include "core/srgb.h"
+#include "image/texture_file.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
 
 namespace opaline::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "../core/scratch_folder.h"
-#include "opaline/core/error.h"
-#include "opaline/image/texture_file.h"
+#include "image/texture_file.h"
+#include "opaline/error.h"
 #include "support/pictures.h"
 
 namespace opaline::test {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "../core/scratch_folder.h"
-#include "opaline/image/image.h"
-#include "opaline/image/view_transform.h"
+#include "image/view_transform.h"
+#include "opaline/image.h"
 
 namespace opaline {
 namespace {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <set>
 
-#include "opaline/core/random.h"
-#include "opaline/irradiance/sample_key.h"
+#include "core/random.h"
+#include "irradiance/sample_key.h"
 #include "support/clouds.h"
 #include "support/lighting.h"
 

@@ -5,12 +5,12 @@
 
 #include <filesystem>
 
+#include "core/random.h"
+#include "input/load_scene.h"
 #include "lights/cumulative_shares.h"
-#include "opaline/core/error.h"
-#include "opaline/core/random.h"
-#include "opaline/image/image.h"
-#include "opaline/lights/environment_picture.h"
-#include "opaline/scene/load_scene.h"
+#include "lights/environment_picture.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
 #include "support/lighting.h"
 
 namespace opaline {

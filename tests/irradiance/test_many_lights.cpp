@@ -2,8 +2,8 @@
 // Lights drawn from a tree in place of all of them.
 #include <gtest/gtest.h>
 
-#include "opaline/core/random.h"
-#include "opaline/lights/light_tree.h"
+#include "core/random.h"
+#include "lights/light_tree.h"
 #include "support/lighting.h"
 #include "support/statistics.h"
 

@@ -2,10 +2,10 @@
 // How well few shadow rays know the light of a room with lamps of many colours.
 #include <gtest/gtest.h>
 
+#include "core/random.h"
+#include "irradiance/sample_key.h"
+#include "lights/environment_picture.h"
 #include "lights/environment_sample.h"
-#include "opaline/core/random.h"
-#include "opaline/irradiance/sample_key.h"
-#include "opaline/lights/environment_picture.h"
 #include "support/lighting.h"
 #include "support/statistics.h"
 

@@ -2,8 +2,8 @@
 // Constant surroundings.
 #include <gtest/gtest.h>
 
-#include "opaline/transport/fresnel.h"
 #include "support/lighting.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {

@@ -2,7 +2,7 @@
 // Beside a shadow's edge, cells that hold parts of two sheets of one surface.
 #include <gtest/gtest.h>
 
-#include "opaline/core/random.h"
+#include "core/random.h"
 #include "support/lighting.h"
 
 namespace opaline {

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <vector>
 
-#include "opaline/core/random.h"
-#include "opaline/exitance/octree.h"
+#include "core/random.h"
+#include "exitance/octree.h"
 
 namespace opaline::test {
 

@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "opaline/core/random.h"
-#include "opaline/quality/measured_error.h"
-#include "opaline/quality/target_error.h"
+#include "core/random.h"
+#include "quality/measured_error.h"
 #include "quality/one_body.h"
 #include "quality/probe.h"
+#include "quality/target_error.h"
 
 namespace opaline::test {
 namespace {

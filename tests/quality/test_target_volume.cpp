@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/image/metrics.h"
-#include "opaline/quality/target_error.h"
+#include "opaline/compare.h"
 #include "quality/probe.h"
+#include "quality/target_error.h"
 #include "session/session_test.h"
 
 namespace opaline::test {

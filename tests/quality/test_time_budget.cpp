@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "core/scratch_folder.h"
-#include "opaline/core/stopwatch.h"
-#include "opaline/quality/time_budget.h"
+#include "core/stopwatch.h"
 #include "quality/one_body.h"
 #include "quality/probe.h"
+#include "quality/time_budget.h"
 
 namespace opaline::test {
 namespace {

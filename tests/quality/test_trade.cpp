@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "opaline/core/stopwatch.h"
-#include "opaline/quality/trade.h"
+#include "core/stopwatch.h"
 #include "quality/one_body.h"
 #include "quality/probe.h"
+#include "quality/trade.h"
 
 namespace opaline::test {
 namespace {

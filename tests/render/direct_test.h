@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "core/random.h"
+#include "methods/direct/direct.h"
 #include "methods/direct/direct_exitance.h"
 #include "methods/direct/entry_sampler.h"
-#include "opaline/core/random.h"
-#include "opaline/render/direct.h"
+#include "plan/make_plan.h"
 #include "support/clouds.h"
 #include "support/scenes.h"
 #include "support/statistics.h"

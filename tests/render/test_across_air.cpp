@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "core/scratch_folder.h"
-#include "opaline/render/across_air.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
+#include "plan/across_air.h"
+#include "plan/make_plan.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

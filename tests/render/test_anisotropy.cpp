@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "core/scratch_folder.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/transport/rough_boundary.h"
+#include "input/load_scene.h"
 #include "support/pictures.h"
 #include "support/scene_picture.h"
 #include "support/scenes.h"
+#include "transport/rough_boundary.h"
 
 namespace opaline::test {
 namespace {

@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "opaline/core/error.h"
-#include "opaline/render/direct.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/scene/names.h"
+#include "input/load_scene.h"
+#include "methods/direct/direct.h"
+#include "opaline/error.h"
+#include "scene/names.h"
+#include "scene/scene_properties.h"
 #include "support/cell_exitance.h"
 #include "support/scene_picture.h"
 #include "support/scenes.h"

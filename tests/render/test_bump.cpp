@@ -7,8 +7,8 @@
 #include <cstring>
 
 #include "core/scratch_folder.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "input/load_scene.h"
+#include "session/session_records.h"
 #include "support/pictures.h"
 #include "support/scenes.h"
 

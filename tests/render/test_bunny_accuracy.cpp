@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "input/load_scene.h"
 #include "methods/hierarchical/hierarchical_state.h"
-#include "opaline/scene/load_scene.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

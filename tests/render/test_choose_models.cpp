@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
+#include "plan/choose_models.h"
+#include "plan/make_plan.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

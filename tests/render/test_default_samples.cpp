@@ -2,9 +2,10 @@
 // How many samples are enough, and that no more are taken unasked.
 #include <gtest/gtest.h>
 
-#include "opaline/image/metrics.h"
-#include "opaline/render/render.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
+#include "opaline/compare.h"
+#include "plan/make_plan.h"
+#include "render/render.h"
 #include "support/scenes.h"
 
 namespace opaline {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of `direct`.
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
 #include "render/direct_test.h"
 #include "support/lighting.h"
 

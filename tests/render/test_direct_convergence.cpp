@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "opaline/image/metrics.h"
+#include "opaline/compare.h"
 #include "render/direct_test.h"
 
 namespace opaline::test {

@@ -4,10 +4,11 @@
 
 #include <cmath>
 
-#include "opaline/image/metrics.h"
-#include "opaline/render/direct.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "input/load_scene.h"
+#include "methods/direct/direct.h"
+#include "opaline/compare.h"
+#include "plan/make_plan.h"
+#include "session/session_records.h"
 
 namespace opaline {
 namespace {

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "../core/scratch_folder.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 #include "render/direct_test.h"
 
 namespace opaline::test {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Profiles in `direct` that know more than a distance: the multipole's two sides, the directional dipole's light.
-#include "opaline/core/error.h"
+#include "opaline/error.h"
+#include "plan/make_plan.h"
 #include "render/direct_test.h"
 #include "support/lighting.h"
 #include "support/quadrature.h"
@@ -75,7 +76,7 @@ TEST(DirectPlates, DirectionalDipoleByAngle) {
 }
 
 // Claim: `hierarchical` refuses the directional dipole in a line that names the medium and what to do; the other methods
-// plan it. Source: render/plan.h. Fails if: its mean stands for it in silence.
+// plan it. Source: bodies/plan.h. Fails if: its mean stands for it in silence.
 TEST(DirectPlates, HierarchicalRefusesDirections) {
   Scene scene =
       single_shape(SphereShape{{}, 5}, grey_medium(1, .01, 1.3, ProfileKind::directional_dipole), 1);

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "opaline/image/metrics.h"
-#include "opaline/render/render.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "input/load_scene.h"
+#include "opaline/compare.h"
+#include "render/render.h"
+#include "session/session_records.h"
 
 namespace opaline {
 namespace {

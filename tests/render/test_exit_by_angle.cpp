@@ -4,11 +4,11 @@
 
 #include <cmath>
 
-#include "opaline/session/session.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/transport/smooth_boundary.h"
+#include "session/session_records.h"
 #include "support/scenes.h"
+#include "transport/fresnel.h"
+#include "transport/half_space.h"
+#include "transport/smooth_boundary.h"
 
 namespace opaline::test {
 namespace {

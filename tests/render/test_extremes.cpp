@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "opaline/render/choose_models.h"
+#include "plan/choose_models.h"
+#include "plan/make_plan.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 
-#include "opaline/core/stopwatch.h"
-#include "opaline/render/first_light.h"
-#include "opaline/session/session.h"
+#include "core/stopwatch.h"
+#include "plan/make_plan.h"
+#include "session/first_light.h"
+#include "session/session_records.h"
 #include "support/scenes.h"
 
 namespace opaline {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "plan/make_plan.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "opaline/core/error.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
+#include "opaline/error.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "opaline/core/stopwatch.h"
-#include "opaline/scene/load_scene.h"
+#include "core/stopwatch.h"
+#include "input/load_scene.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

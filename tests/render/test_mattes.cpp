@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "opaline/render/mattes.h"
+#include "render/mattes.h"
 #include "support/scenes.h"
 
 namespace opaline {

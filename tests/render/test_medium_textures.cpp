@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "core/scratch_folder.h"
-#include "opaline/geometry/nearest_surface.h"
-#include "opaline/volume/nearest_sample.h"
+#include "geometry/nearest_surface.h"
 #include "support/cell_exitance.h"
 #include "support/pictures.h"
 #include "support/scene_picture.h"
 #include "support/surfaces.h"
+#include "volume/nearest_sample.h"
 
 namespace opaline::test {
 namespace {

@@ -8,9 +8,9 @@
 #include <filesystem>
 
 #include "core/scratch_folder.h"
-#include "opaline/image/image.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "input/load_scene.h"
+#include "opaline/image.h"
+#include "session/session_records.h"
 
 namespace opaline {
 namespace {

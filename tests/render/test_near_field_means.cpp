@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/random.h"
 #include "methods/hierarchical/near_field/near_field_means.h"
-#include "opaline/core/random.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -4,7 +4,8 @@
 #include <numbers>
 #include <random>
 
-#include "render/light_distance.h"
+#include "methods/hierarchical/light_distance.h"
+#include "plan/make_plan.h"
 #include "support/scenes.h"
 #include "support/surfaces.h"
 

@@ -2,8 +2,8 @@
 // A picture that shows nothing says what it is likely to lack.
 #include <gtest/gtest.h>
 
-#include "opaline/render/picture_warnings.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
+#include "plan/picture_warnings.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -7,10 +7,12 @@
 #include <string>
 #include <variant>
 
-#include "opaline/core/error.h"
-#include "opaline/lights/light.h"
-#include "opaline/render/direct.h"
-#include "opaline/render/render.h"
+#include "lights/light.h"
+#include "methods/direct/direct.h"
+#include "opaline/error.h"
+#include "plan/make_plan.h"
+#include "render/render.h"
+#include "subsurface/method.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "../core/scratch_folder.h"
-#include "opaline/render/precompute.h"
-#include "opaline/scene/load_scene.h"
-#include "render/seen_pixels.h"
+#include "bodies/body.h"
+#include "input/load_scene.h"
+#include "plan/seen_pixels.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

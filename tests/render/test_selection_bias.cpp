@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "core/random.h"
 #include "methods/hierarchical/near_field/selection_bias.h"
-#include "opaline/core/random.h"
 
 namespace opaline {
 namespace {

@@ -2,12 +2,12 @@
 // What boundaries mirror.
 #include <gtest/gtest.h>
 
-#include "opaline/core/random.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/rough_boundary.h"
+#include "core/random.h"
+#include "input/load_scene.h"
 #include "support/scene_picture.h"
 #include "support/scenes.h"
+#include "transport/fresnel.h"
+#include "transport/rough_boundary.h"
 
 namespace opaline::test {
 namespace {

@@ -8,10 +8,10 @@
 #include <numbers>
 #include <utility>
 
+#include "core/atomic_file.h"
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/surface_caches.h"
-#include "opaline/core/atomic_file.h"
-#include "opaline/image/metrics.h"
+#include "opaline/compare.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "core/scratch_folder.h"
-#include "opaline/render/direct.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "input/load_scene.h"
+#include "methods/direct/direct.h"
+#include "session/session_records.h"
 #include "support/pictures.h"
 #include "support/scene_picture.h"
 #include "support/scenes.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "opaline/session/session.h"
-#include "opaline/transport/fresnel.h"
+#include "session/session_records.h"
 #include "support/scenes.h"
+#include "transport/fresnel.h"
 
 namespace opaline::test {
 namespace {

@@ -2,7 +2,7 @@
 // Samples for a first look: few, cheap, and yet all of the surface.
 #include <gtest/gtest.h>
 
-#include "opaline/sampling/draft_samples.h"
+#include "sampling/draft_samples.h"
 #include "support/scenes.h"
 
 namespace opaline {

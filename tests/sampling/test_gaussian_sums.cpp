@@ -2,7 +2,7 @@
 // What the shares are for: sums over samples are integrals over the surface.
 #include <gtest/gtest.h>
 
-#include "opaline/core/random.h"
+#include "core/random.h"
 #include "support/surfaces.h"
 
 namespace opaline {

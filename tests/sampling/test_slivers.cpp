@@ -4,7 +4,7 @@
 
 #include <ctime>
 
-#include "opaline/core/stopwatch.h"
+#include "core/stopwatch.h"
 #include "support/surfaces.h"
 
 namespace opaline {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "opaline/core/error.h"
-#include "opaline/scene/load_scene.h"
+#include "input/load_scene.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

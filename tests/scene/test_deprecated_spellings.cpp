@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Old spellings of keys and values.
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
 #include "scene_test.h"
 
 namespace opaline {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <map>
 
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
 #include "scene_test.h"
 
 namespace opaline {

@@ -4,7 +4,7 @@
 namespace opaline {
 namespace {
 
-// Claim: line and column count from 1, in bytes, at the start of the key or value. Source: core/error.h; the
+// Claim: line and column count from 1, in bytes, at the start of the key or value. Source: opaline/error.h; the
 // numbers are counted by hand. Fails if TokenCursor::next returns the token's end.
 TEST(SceneErrors, CountFromOne) {
   const Error key = error_of("{\"film\": {},\n  \"flim\": {}}");

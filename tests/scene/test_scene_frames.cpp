@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Values and files that change from frame to frame.
 #include "scene_test.h"
+#include "values/frame_name.h"
 
 namespace opaline {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "../core/scratch_folder.h"
-#include "opaline/image/texture_file.h"
+#include "image/texture_file.h"
+#include "scene/scene_properties.h"
 #include "scene_test.h"
 #include "support/pictures.h"
 

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 #include "support/scene_picture.h"
 #include "support/scenes.h"
 

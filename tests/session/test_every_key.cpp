@@ -3,9 +3,9 @@
 #include <map>
 
 #include "../core/scratch_folder.h"
-#include "opaline/image/image.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/scene/schema.h"
+#include "input/load_scene.h"
+#include "input/schema.h"
+#include "opaline/image.h"
 #include "session_test.h"
 
 namespace opaline::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What rough coats mirror is found once for a view: no ray is traced again for another colour or medium, and the picture is
 // that of a new session, bit for bit.
-#include "opaline/lights/environment_picture.h"
+#include "lights/environment_picture.h"
 #include "session_test.h"
 
 namespace opaline {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rays that gather light from surfaces to others are traced once for a view, and those at samples once for the samples.
-#include "opaline/render/held_view.h"
-#include "opaline/render/render.h"
+#include "render/render.h"
 #include "session_test.h"
+#include "subsurface/held_view.h"
 
 namespace opaline {
 namespace {

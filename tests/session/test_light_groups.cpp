@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What each light adds to a picture, as layers.
-#include "opaline/core/error.h"
-#include "opaline/lights/light.h"
-#include "opaline/session/light_groups.h"
+#include "lights/light.h"
+#include "opaline/error.h"
+#include "session/light_groups.h"
 #include "session_test.h"
 
 namespace opaline {

@@ -2,10 +2,10 @@
 // Pictures of scenes with many lights, of which each point draws a few.
 #include <tbb/global_control.h>
 
-#include "opaline/core/random.h"
-#include "opaline/image/metrics.h"
-#include "opaline/lights/light.h"
-#include "opaline/session/light_groups.h"
+#include "core/random.h"
+#include "lights/light.h"
+#include "opaline/compare.h"
+#include "session/light_groups.h"
 #include "session_test.h"
 #include "support/statistics.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // No shadow may be missed: a light's entry in the cache would be taken where it is another.
-#include "opaline/session/stage_keys.h"
+#include "stages/stage_keys.h"
 #include "support/cache_test.h"
 #include "support/scenes.h"
 

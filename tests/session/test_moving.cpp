@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "../core/scratch_folder.h"
-#include "opaline/core/random.h"
-#include "opaline/geometry/make_mesh.h"
-#include "opaline/sampling/carry_samples.h"
+#include "core/random.h"
+#include "geometry/make_mesh.h"
+#include "sampling/carry_samples.h"
 #include "session_test.h"
 
 namespace opaline {

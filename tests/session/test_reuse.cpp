@@ -7,6 +7,7 @@
 #include <cstring>
 #include <thread>
 
+#include "plan/make_plan.h"
 #include "session_test.h"
 
 namespace opaline {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions that share a cache.
 #include "../core/scratch_folder.h"
-#include "opaline/cache/cache_folder.h"
-#include "opaline/session/stage_keys.h"
-#include "session/stage_codecs.h"
+#include "cache/cache_folder.h"
 #include "session_test.h"
+#include "stages/stage_codecs.h"
+#include "stages/stage_keys.h"
 
 namespace opaline {
 namespace {

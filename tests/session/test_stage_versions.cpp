@@ -3,7 +3,7 @@
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/volume/volume_state.h"
 #include "methods/volume_diffusion/volume_diffusion_state.h"
-#include "opaline/session/stage_keys.h"
+#include "stages/stage_keys.h"
 #include "support/cache_test.h"
 #include "support/scenes.h"
 
@@ -13,7 +13,7 @@ namespace {
 using namespace test;
 
 // Claim: samples, light and trees, which the cache keeps, are what they were when their versions in
-// src/session/stage_keys.cpp and src/methods were last raised. Source: this box, in which no function of a mathematical library
+// src/stages/stage_keys.cpp and src/methods were last raised. Source: this box, in which no function of a mathematical library
 // takes part. If it fails and the change was meant: raise the versions of that stage and put the new value
 // here. Fails if: any constant of a stage is changed.
 TEST(StageVersions, ComputeWhatTheyDid) {

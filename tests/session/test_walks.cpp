@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random walks from edit to edit.
+#include "lights/light.h"
 #include "methods/volume/volume_state.h"
-#include "opaline/lights/light.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/laboratory.h"
 #include "session_test.h"
+#include "transport/fresnel.h"
+#include "transport/laboratory.h"
 
 namespace opaline {
 namespace {

@@ -7,10 +7,10 @@
 #include <cstring>
 
 #include "../core/scratch_folder.h"
-#include "opaline/cache/cache_folder.h"
-#include "opaline/core/random.h"
-#include "opaline/session/stage_cache.h"
-#include "session/stage_codecs.h"
+#include "cache/cache_folder.h"
+#include "core/random.h"
+#include "stages/stage_cache.h"
+#include "stages/stage_codecs.h"
 
 namespace opaline::test {
 

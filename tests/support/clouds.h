@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "opaline/core/random.h"
-#include "opaline/exitance/evaluate.h"
-#include "opaline/exitance/octree.h"
+#include "core/random.h"
+#include "exitance/evaluate.h"
+#include "exitance/octree.h"
 #include "support/scenes.h"
 #include "support/surfaces.h"
 

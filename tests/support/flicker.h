@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "opaline/session/session.h"
+#include "session/session_records.h"
 #include "support/scenes.h"
 
 namespace opaline::test {

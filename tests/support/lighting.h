@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "opaline/irradiance/irradiance.h"
-#include "opaline/lights/light.h"
+#include "irradiance/irradiance.h"
+#include "lights/light.h"
 #include "support/surfaces.h"
 
 namespace opaline::test {

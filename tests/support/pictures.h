@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "opaline/image/image.h"
+#include "opaline/image.h"
 
 namespace opaline::test {
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/core/parallel.h"
-#include "opaline/transport/point_source.h"
-#include "opaline/transport/random_walk.h"
+#include "core/parallel.h"
 #include "transport/control_regression.h"
 #include "transport/laboratory_checks.h"
+#include "transport/point_source.h"
+#include "transport/random_walk.h"
 #include "transport/slab_tally.h"
 
 namespace opaline::test {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "benchmark/csv.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 

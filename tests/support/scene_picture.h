@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/scratch_folder.h"
-#include "opaline/render/direct.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "input/load_scene.h"
+#include "methods/direct/direct.h"
+#include "session/session_records.h"
 
 namespace opaline::test {
 

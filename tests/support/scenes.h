@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "opaline/render/render.h"
-#include "opaline/scene/scene.h"
-#include "opaline/session/session.h"
+#include "opaline/scene.h"
+#include "render/render.h"
+#include "session/session_records.h"
 
 namespace opaline::test {
 

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "opaline/render/direct.h"
-#include "opaline/transport/fresnel.h"
+#include "methods/direct/direct.h"
 #include "support/scenes.h"
+#include "transport/fresnel.h"
 
 namespace opaline::test {
 

@@ -17,11 +17,11 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/geometry/make_mesh.h"
-#include "opaline/geometry/surface_point.h"
-#include "opaline/geometry/world.h"
-#include "opaline/sampling/sample_surface.h"
-#include "opaline/scene/scene.h"
+#include "geometry/make_mesh.h"
+#include "geometry/surface_point.h"
+#include "geometry/world.h"
+#include "opaline/scene.h"
+#include "sampling/sample_surface.h"
 
 namespace opaline::test {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/core/random.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/rough_boundary.h"
+#include "core/random.h"
+#include "transport/fresnel.h"
+#include "transport/rough_boundary.h"
 
 namespace opaline {
 namespace {

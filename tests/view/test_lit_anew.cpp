@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A picture in other light without a ray: how near it is to the one that is rendered, and that the view shows it first.
-#include "opaline/lights/light.h"
+#include "lights/light.h"
 #include "support/scene_picture.h"
 #include "view/lit_anew.h"
 #include "view_client.h"

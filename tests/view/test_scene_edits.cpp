@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Edits of a scene: each a step that can be taken back, and a file that can be read again.
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 #include "view_client.h"
 
 namespace opaline {

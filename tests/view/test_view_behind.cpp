@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is worked out behind the final picture: the trade, whose points can be taken, and references on the wipe.
-#include "opaline/quality/target_error.h"
+#include "quality/target_error.h"
 #include "view_page.h"
 
 namespace opaline {

@@ -2,8 +2,9 @@
 // Frames of a scene whose values change: the slider's picture is that of `opaline render --frames`, and what frames share
 // is not computed again.
 #include "../cli/run_program.h"
-#include "opaline/core/error.h"
-#include "opaline/image/image.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
+#include "values/frame_name.h"
 #include "view_page.h"
 
 namespace opaline {

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "../fuzz/mutate_bytes.h"
-#include "opaline/scene/schema.h"
+#include "input/schema.h"
 #include "view_client.h"
 
 namespace opaline {

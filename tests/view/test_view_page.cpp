@@ -2,8 +2,8 @@
 // The real page in a real browser: what a person does there is what the scene becomes, and what the file holds.
 #include <random>
 
-#include "opaline/core/error.h"
-#include "opaline/core/machine_memory.h"
+#include "core/machine_memory.h"
+#include "opaline/error.h"
 #include "view_page.h"
 
 namespace opaline {

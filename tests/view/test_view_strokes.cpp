@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whatever a person does at the page of `opaline view`, and however fast: nothing that was done is lost, the final
 // picture is that of `opaline render` of the scene that the page saves, and memory stays.
-#include "opaline/core/error.h"
-#include "opaline/image/image.h"
+#include "opaline/error.h"
+#include "opaline/image.h"
 #include "strokes.h"
+#include "values/frame_name.h"
 #include "view/page_message.h"
 #include "view/scene_edits.h"
 #include "view_program.h"

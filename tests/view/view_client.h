@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "../core/scratch_folder.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
+#include "input/load_scene.h"
+#include "session/session_records.h"
 #include "view/view_frame.h"
 #include "view/view_server.h"
 

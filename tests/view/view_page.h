@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "browser.h"
-#include "opaline/image/view_transform.h"
+#include "image/view_transform.h"
 
 namespace opaline::test {
 

@@ -11,9 +11,9 @@
 #include <random>
 #include <vector>
 
-#include "opaline/geometry/ray_scene.h"
-#include "opaline/transport/henyey_greenstein.h"
-#include "opaline/transport/medium.h"
+#include "geometry/ray_scene.h"
+#include "transport/henyey_greenstein.h"
+#include "transport/medium.h"
 
 namespace opaline::test {
 

@@ -2,10 +2,10 @@
 // A lit body by diffusion in its cells.
 #pragma once
 
-#include "opaline/irradiance/irradiance.h"
-#include "opaline/volume/nearest_sample.h"
-#include "opaline/volume/volume_diffusion.h"
+#include "irradiance/irradiance.h"
 #include "volume/lit_body.h"
+#include "volume/nearest_sample.h"
+#include "volume/volume_diffusion.h"
 
 namespace opaline::test {
 

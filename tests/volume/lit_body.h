@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "opaline/lights/light.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/volume/volume_exitance.h"
+#include "lights/light.h"
 #include "support/surfaces.h"
+#include "transport/fresnel.h"
+#include "volume/volume_exitance.h"
 #include "volume/volume_test.h"
 
 namespace opaline::test {

@@ -2,8 +2,8 @@
 // How light leaves by angle, against random walks.
 #include <cmath>
 
-#include "opaline/transport/angular_exit.h"
-#include "opaline/transport/fresnel.h"
+#include "transport/angular_exit.h"
+#include "transport/fresnel.h"
 #include "volume_test.h"
 
 namespace opaline {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The truth against another one: random walks from the light, and paths from the viewer.
-#include "opaline/core/parallel.h"
+#include "core/parallel.h"
 #include "support/statistics.h"
 #include "volume/camera_paths.h"
 #include "volume/lit_body.h"

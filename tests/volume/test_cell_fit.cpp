@@ -5,9 +5,9 @@
 #include <functional>
 #include <random>
 
-#include "opaline/volume/cell_fit.h"
 #include "support/statistics.h"
 #include "support/surfaces.h"
+#include "volume/cell_fit.h"
 
 namespace opaline {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <set>
 
-#include "opaline/volume/cut_surface.h"
 #include "support/surfaces.h"
+#include "volume/cut_surface.h"
 #include "volume/volume_test.h"
 
 namespace opaline {

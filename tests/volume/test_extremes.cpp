@@ -4,9 +4,9 @@
 #include <functional>
 #include <limits>
 
-#include "opaline/core/error.h"
-#include "opaline/transport/point_source.h"
+#include "opaline/error.h"
 #include "support/point_source_walks.h"
+#include "transport/point_source.h"
 #include "volume_test.h"
 
 namespace opaline {

@@ -4,9 +4,9 @@
 #include <sstream>
 
 #include "../core/scratch_folder.h"
-#include "opaline/core/random.h"
-#include "opaline/volume/cell_fit.h"
-#include "opaline/volume/cut_outer_surface.h"
+#include "core/random.h"
+#include "volume/cell_fit.h"
+#include "volume/cut_outer_surface.h"
 #include "volume/diffused_body.h"
 
 namespace opaline {

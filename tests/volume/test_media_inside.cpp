@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The diffusion equation inside meshes whose medium differs from place to place.
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/half_space.h"
+#include "transport/fresnel.h"
+#include "transport/half_space.h"
 #include "volume/diffused_body.h"
 
 namespace opaline {

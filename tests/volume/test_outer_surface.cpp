@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/volume/cut_outer_surface.h"
+#include "volume/cut_outer_surface.h"
 #include "volume/lit_body.h"
 
 namespace opaline {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The fluence around a point source.
 #include "diffusion/diffusion_test.h"
-#include "opaline/transport/point_source.h"
 #include "support/point_source_walks.h"
+#include "transport/point_source.h"
 #include "volume_test.h"
 
 namespace opaline {

@@ -2,7 +2,7 @@
 // Light that a slab sends back and lets through.
 #include <tbb/global_control.h>
 
-#include "opaline/transport/fresnel.h"
+#include "transport/fresnel.h"
 #include "volume_test.h"
 
 namespace opaline {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The diffusion equation inside meshes.
-#include "opaline/irradiance/irradiance.h"
-#include "opaline/scene/load_scene.h"
-#include "opaline/session/session.h"
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/half_space.h"
-#include "opaline/volume/cell_fit.h"
-#include "opaline/volume/volume_diffusion.h"
+#include "input/load_scene.h"
+#include "irradiance/irradiance.h"
+#include "session/session_records.h"
 #include "support/cell_exitance.h"
+#include "transport/fresnel.h"
+#include "transport/half_space.h"
+#include "volume/cell_fit.h"
 #include "volume/diffused_body.h"
+#include "volume/volume_diffusion.h"
 
 namespace opaline {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random walks inside meshes.
-#include "opaline/transport/fresnel.h"
-#include "opaline/transport/laboratory.h"
+#include "transport/fresnel.h"
+#include "transport/laboratory.h"
 #include "volume/lit_body.h"
 
 namespace opaline {

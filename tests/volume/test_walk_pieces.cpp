@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pieces that walks are made of.
-#include "opaline/transport/random_walk.h"
 #include "support/statistics.h"
 #include "transport/control_regression.h"
+#include "transport/random_walk.h"
 #include "volume_test.h"
 
 namespace opaline {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "opaline/transport/laboratory.h"
+#include "transport/laboratory.h"
 
 namespace opaline::test {
 

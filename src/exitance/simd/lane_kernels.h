@@ -6,10 +6,10 @@
 #include <span>
 
 #include "exitance/expansion.h"
+#include "exitance/octree.h"
 #include "exitance/simd/lane_table.h"
 #include "exitance/source_block.h"
-#include "opaline/exitance/octree.h"
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 

@@ -2,7 +2,7 @@
 #include <emmintrin.h>
 
 #include "exitance/simd/lane_kernels.h"
-#include "opaline/core/error.h"
+#include "opaline/error.h"
 
 namespace opaline {
 namespace {

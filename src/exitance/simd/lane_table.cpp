@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/diffusion/interpolating_cubic.h"
+#include "diffusion/interpolating_cubic.h"
 
 namespace opaline {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "opaline/diffusion/diffuse_profile.h"
+#include "diffusion/diffuse_profile.h"
 
 namespace opaline {
 

@@ -11,7 +11,7 @@
 
 #include "geometry/cut_polygons.h"
 #include "geometry/topology.h"
-#include "opaline/core/random.h"
+#include "core/random.h"
 
 namespace opaline {
 namespace {

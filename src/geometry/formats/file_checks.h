@@ -9,8 +9,8 @@
 
 #include "geometry/cut_polygons.h"
 #include "geometry/source_mesh.h"
-#include "opaline/core/error.h"
-#include "opaline/core/vec3.h"
+#include "opaline/error.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 

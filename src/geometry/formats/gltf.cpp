@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "geometry/formats/file_checks.h"
+#include "geometry/formats/gltf_part.h"
 #include "geometry/formats/mesh_format.h"
 #include "geometry/formats/vertex_colors.h"
-#include "opaline/assets/gltf_part.h"
 
 namespace opaline {
 namespace {

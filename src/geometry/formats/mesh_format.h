@@ -8,8 +8,9 @@
 #include <string_view>
 
 #include "geometry/source_mesh.h"
-#include "opaline/scene/mesh_formats.h"
-#include "opaline/scene/scene.h"
+#include "opaline/scene.h"
+#include "scene/mesh_formats.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 

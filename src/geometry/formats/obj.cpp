@@ -7,12 +7,12 @@
 #include <unordered_set>
 #include <utility>
 
+#include "core/byte_order_mark.h"
 #include "geometry/formats/file_checks.h"
 #include "geometry/formats/mesh_format.h"
+#include "geometry/formats/obj_material.h"
 #include "geometry/formats/text_cursor.h"
 #include "geometry/formats/vertex_colors.h"
-#include "opaline/assets/obj_material.h"
-#include "opaline/core/byte_order_mark.h"
 
 namespace opaline {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/byte_order_mark.h"
 #include "geometry/formats/file_checks.h"
 #include "geometry/formats/mesh_format.h"
 #include "geometry/formats/text_cursor.h"
 #include "geometry/formats/vertex_colors.h"
-#include "opaline/core/byte_order_mark.h"
 
 namespace opaline {
 namespace {

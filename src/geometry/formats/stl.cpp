@@ -7,12 +7,12 @@
 #include <bit>
 #include <utility>
 
+#include "core/byte_order_mark.h"
 #include "core/lower_case.h"
 #include "geometry/formats/file_checks.h"
 #include "geometry/formats/mesh_format.h"
 #include "geometry/formats/text_cursor.h"
 #include "geometry/topology.h"
-#include "opaline/core/byte_order_mark.h"
 
 namespace opaline {
 namespace {

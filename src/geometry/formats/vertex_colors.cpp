@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/core/srgb.h"
+#include "core/srgb.h"
 
 namespace opaline {
 namespace {

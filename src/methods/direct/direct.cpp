@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "opaline/render/direct.h"
+#include "methods/direct/direct.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 
-#include "methods/method.h"
-#include "opaline/core/parallel.h"
-#include "opaline/diffusion/diffuse_profile.h"
+#include "core/parallel.h"
+#include "diffusion/diffuse_profile.h"
+#include "methods/direct/direct_field.h"
 #include "render/tile_renderer.h"
+#include "scene/scene_properties.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {
@@ -35,7 +37,8 @@ class DirectRenderer {
       : scene_(input.scene),
         render_input_{input.scene, input.world, input.rays, {}, input.monitor},
         samplers_(make_samplers(input)),
-        shader_(render_input_, samplers_),
+        sources_(make_sources(samplers_)),
+        shader_(render_input_, sources_),
         tile_renderer_(render_input_, shader_),
         part_(rendered_part(input.scene.film)),
         tiles_(tiles_of(input.scene.film)) {}
@@ -96,6 +99,15 @@ class DirectRenderer {
     return samplers;
   }
 
+  static std::vector<FieldSource> make_sources(std::span<const EntrySampler> samplers) {
+    std::vector<FieldSource> sources;
+    for (const EntrySampler& sampler : samplers)
+      sources.push_back({sampler.meshes(), [&sampler](const SurfaceTextures& textures, float eta) {
+                           return std::make_unique<DirectField>(sampler, textures, eta);
+                         }});
+    return sources;
+  }
+
   Pass pass_of(const DirectState& state) const {
     return {.index = state.passes,
             .entry_samples = entry_samples_per_ray(scene_.film),
@@ -118,6 +130,7 @@ class DirectRenderer {
   const Scene& scene_;
   RenderInput render_input_;
   std::vector<EntrySampler> samplers_;
+  std::vector<FieldSource> sources_;
   Shader shader_;
   TileRenderer tile_renderer_;
   Rectangle part_;

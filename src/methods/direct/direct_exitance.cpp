@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/direct/direct_exitance.h"
 
-#include "opaline/core/random.h"
-#include "opaline/irradiance/irradiance.h"
-#include "opaline/lights/light.h"
+#include "core/random.h"
+#include "irradiance/irradiance.h"
+#include "lights/light.h"
 #include "render/bounced_light.h"
 
 namespace opaline {

@@ -2,9 +2,9 @@
 // Radiant exitance at points, by sampling entry points.
 #pragma once
 
+#include "bodies/surface_textures.h"
+#include "irradiance/irradiance.h"
 #include "methods/direct/entry_sampler.h"
-#include "opaline/irradiance/irradiance.h"
-#include "opaline/render/surface_textures.h"
 
 namespace opaline {
 

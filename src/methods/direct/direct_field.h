@@ -3,7 +3,7 @@
 #pragma once
 
 #include "methods/direct/direct_exitance.h"
-#include "render/fields/field.h"
+#include "subsurface/field.h"
 
 namespace opaline {
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "opaline/render/direct.h"
+#include "methods/direct/direct.h"
 
 namespace opaline {
 

@@ -2,7 +2,7 @@
 // `direct`: the BSSRDF, importance-sampled at each hit (render_direct); unbiased and noisy.
 #pragma once
 
-#include "methods/method.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 

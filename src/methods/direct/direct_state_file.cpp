@@ -3,9 +3,9 @@
 #include <charconv>
 #include <filesystem>
 
-#include "opaline/core/error.h"
-#include "opaline/render/direct.h"
-#include "render/sums_file.h"
+#include "image/sums_file.h"
+#include "methods/direct/direct.h"
+#include "opaline/error.h"
 #include "render/tile_renderer.h"
 
 namespace opaline {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "opaline/core/random.h"
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/sampling/sample_surface.h"
+#include "core/random.h"
+#include "diffusion/diffuse_profile.h"
+#include "sampling/sample_surface.h"
 
 namespace opaline {
 namespace {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/diffusion/kernel_table.h"
-#include "opaline/geometry/line_query.h"
-#include "opaline/render/plan.h"
+#include "bodies/plan.h"
+#include "diffusion/diffuse_profile.h"
+#include "diffusion/kernel_table.h"
+#include "geometry/line_query.h"
 
 namespace opaline {
 

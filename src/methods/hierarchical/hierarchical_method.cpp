@@ -7,15 +7,15 @@
 #include <cmath>
 #include <variant>
 
+#include "diffusion/tabulated.h"
+#include "exitance/cloud_error.h"
+#include "exitance/evaluate.h"
+#include "lights/light.h"
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/sample_field.h"
 #include "methods/hierarchical/surface_caches.h"
-#include "opaline/diffusion/tabulated.h"
-#include "opaline/exitance/cloud_error.h"
-#include "opaline/exitance/evaluate.h"
-#include "opaline/lights/light.h"
-#include "opaline/render/precompute.h"
-#include "session/stage_codecs.h"
+#include "scene/scene_properties.h"
+#include "stages/stage_codecs.h"
 
 namespace opaline {
 namespace {

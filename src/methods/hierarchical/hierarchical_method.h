@@ -2,7 +2,7 @@
 // `hierarchical`: a radial profile, summed over an octree of samples (Jensen & Buhler 2002).
 #pragma once
 
-#include "methods/method.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "methods/body_stages.h"
-#include "opaline/lights/light.h"
+#include "lights/light.h"
+#include "subsurface/body_stages.h"
 
 namespace opaline {
 

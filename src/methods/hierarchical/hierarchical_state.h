@@ -2,11 +2,11 @@
 // Octree of transmitted flux, kernel and surface cache of one body.
 #pragma once
 
-#include "methods/stage_store.h"
-#include "opaline/exitance/evaluate.h"
-#include "opaline/exitance/octree.h"
-#include "opaline/exitance/surface_cache.h"
-#include "opaline/render/precompute.h"
+#include "bodies/body.h"
+#include "exitance/evaluate.h"
+#include "exitance/octree.h"
+#include "exitance/surface_cache.h"
+#include "stages/stage_store.h"
 
 namespace opaline {
 

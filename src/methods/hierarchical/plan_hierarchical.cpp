@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include "methods/hierarchical/hierarchical_method.h"
+#include "methods/hierarchical/light_distance.h"
 #include "methods/hierarchical/surface_caches.h"
-#include "render/light_distance.h"
-#include "render/plan_samples.h"
+#include "scene/scene_properties.h"
+#include "subsurface/plan_samples.h"
 
 namespace opaline {
 namespace {

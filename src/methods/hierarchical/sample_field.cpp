@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "exitance/surface_patch.h"
 #include "methods/hierarchical/near_field/crease_error.h"
 #include "methods/hierarchical/near_field/selection_bias.h"
-#include "opaline/exitance/surface_patch.h"
 #include "render/fields/make_fields.h"
 
 namespace opaline {

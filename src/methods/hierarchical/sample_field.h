@@ -8,8 +8,8 @@
 
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/near_field/near_field_sampler.h"
-#include "opaline/render/render.h"
-#include "render/fields/field.h"
+#include "subsurface/field.h"
+#include "subsurface/render_input.h"
 
 namespace opaline {
 

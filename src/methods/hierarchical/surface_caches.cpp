@@ -8,16 +8,15 @@
 #include <span>
 #include <vector>
 
+#include "core/parallel.h"
+#include "core/random.h"
+#include "exitance/refined_stake.h"
+#include "exitance/surface_cache.h"
+#include "exitance/surface_patch.h"
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/near_field/near_field_sampler.h"
-#include "methods/method.h"
-#include "opaline/core/parallel.h"
-#include "opaline/core/random.h"
-#include "opaline/exitance/refined_stake.h"
-#include "opaline/exitance/surface_cache.h"
-#include "opaline/exitance/surface_patch.h"
-#include "opaline/render/precompute.h"
 #include "render/camera_rays.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "opaline/exitance/surface_cache.h"
-#include "opaline/render/precompute.h"
+#include "bodies/body.h"
+#include "exitance/surface_cache.h"
 
 namespace opaline {
 

@@ -3,7 +3,7 @@
 // costs.
 #pragma once
 
-#include "methods/method.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 

@@ -2,9 +2,9 @@
 // Radiant exitance interpolated between means over the samples' cells.
 #pragma once
 
-#include "opaline/render/render.h"
-#include "opaline/volume/cell_fit.h"
-#include "render/fields/field.h"
+#include "subsurface/field.h"
+#include "subsurface/render_input.h"
+#include "volume/cell_fit.h"
 
 namespace opaline {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "opaline/render/precompute.h"
-#include "opaline/volume/volume_exitance.h"
+#include "bodies/body.h"
+#include "volume/volume_exitance.h"
 
 namespace opaline {
 

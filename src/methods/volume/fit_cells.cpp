@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/volume/fit_cells.h"
 
+#include "scene/scene_properties.h"
+
 namespace opaline {
 
 std::shared_ptr<const CellFit> fit_cells(BodyStages& stages, ReusedWeights& weights,

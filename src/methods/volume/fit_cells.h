@@ -5,9 +5,9 @@
 #include <memory>
 #include <span>
 
-#include "methods/body_stages.h"
-#include "opaline/exitance/evaluate.h"
-#include "opaline/volume/cell_fit.h"
+#include "exitance/evaluate.h"
+#include "subsurface/body_stages.h"
+#include "volume/cell_fit.h"
 
 namespace opaline {
 

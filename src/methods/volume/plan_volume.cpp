@@ -6,7 +6,7 @@
 
 #include "methods/volume/volume_method.h"
 #include "methods/volume/walk_input.h"
-#include "opaline/volume/walk_memory.h"
+#include "volume/walk_memory.h"
 
 namespace opaline {
 

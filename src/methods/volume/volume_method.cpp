@@ -6,13 +6,13 @@
 #include <span>
 #include <utility>
 
+#include "bodies/surface_textures.h"
+#include "lights/light.h"
+#include "lights/light_tree.h"
 #include "methods/volume/cell_field.h"
 #include "methods/volume/cell_warnings.h"
 #include "methods/volume/volume_state.h"
 #include "methods/volume/walk_input.h"
-#include "opaline/lights/light.h"
-#include "opaline/lights/light_tree.h"
-#include "opaline/render/surface_textures.h"
 
 namespace opaline {
 namespace {

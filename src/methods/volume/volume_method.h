@@ -2,7 +2,7 @@
 // `volume`: volumetric path tracing inside the bodies, the reference.
 #pragma once
 
-#include "methods/method.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "methods/volume/fit_cells.h"
-#include "opaline/volume/volume_exitance.h"
+#include "volume/volume_exitance.h"
 
 namespace opaline {
 

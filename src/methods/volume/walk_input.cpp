@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "opaline/core/random.h"
-#include "render/local_media.h"
+#include "bodies/local_media.h"
+#include "core/random.h"
 
 namespace opaline {
 namespace {

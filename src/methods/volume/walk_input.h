@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "opaline/render/precompute.h"
-#include "opaline/volume/volume_exitance.h"
+#include "bodies/body.h"
+#include "volume/volume_exitance.h"
 
 namespace opaline {
 

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <variant>
 
+#include "diffusion/diffuse_profile.h"
 #include "methods/volume_diffusion/volume_diffusion_method.h"
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/volume/volume_diffusion.h"
-#include "render/plan_samples.h"
+#include "scene/scene_properties.h"
+#include "subsurface/plan_samples.h"
+#include "volume/volume_diffusion.h"
 
 namespace opaline {
 namespace {

@@ -7,14 +7,14 @@
 #include <span>
 #include <utility>
 
+#include "bodies/local_media.h"
+#include "bodies/surface_textures.h"
 #include "methods/volume/cell_field.h"
 #include "methods/volume/cell_warnings.h"
 #include "methods/volume_diffusion/volume_diffusion_state.h"
-#include "opaline/render/precompute.h"
-#include "opaline/render/surface_textures.h"
-#include "opaline/volume/volume_diffusion.h"
-#include "render/local_media.h"
-#include "session/stage_codecs.h"
+#include "scene/scene_properties.h"
+#include "stages/stage_codecs.h"
+#include "volume/volume_diffusion.h"
 
 namespace opaline {
 namespace {

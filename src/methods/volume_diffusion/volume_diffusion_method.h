@@ -2,7 +2,7 @@
 // `volume_diffusion`: the diffusion equation, solved on cells inside the bodies.
 #pragma once
 
-#include "methods/method.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "methods/volume/fit_cells.h"
-#include "opaline/volume/volume_diffusion.h"
-#include "opaline/volume/volume_exitance.h"
+#include "volume/volume_diffusion.h"
+#include "volume/volume_exitance.h"
 
 namespace opaline {
 

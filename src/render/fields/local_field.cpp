@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/fields/local_field.h"
 
-#include "methods/method.h"
 #include "render/fields/make_fields.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 

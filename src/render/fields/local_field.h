@@ -2,8 +2,8 @@
 // Diffuse reflection at the hit: opaque surfaces, and `lambert`, the limit of a vanishing mean free path.
 #pragma once
 
-#include "opaline/render/render.h"
-#include "render/fields/field.h"
+#include "subsurface/field.h"
+#include "subsurface/render_input.h"
 
 namespace opaline {
 

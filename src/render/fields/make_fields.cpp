@@ -3,19 +3,19 @@
 
 #include <algorithm>
 
-#include "methods/direct/direct_field.h"
-#include "methods/method.h"
-#include "opaline/diffusion/diffuse_profile.h"
-#include "opaline/irradiance/sample_key.h"
-#include "opaline/lights/light.h"
-#include "opaline/lights/light_tree.h"
+#include "diffusion/diffuse_profile.h"
+#include "irradiance/sample_key.h"
+#include "lights/light.h"
+#include "lights/light_tree.h"
 #include "render/fields/local_field.h"
 #include "render/fields/partly_opaque_field.h"
+#include "scene/scene_properties.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {
 
-bool has_mesh(const std::vector<std::uint32_t>& meshes, std::size_t mesh) {
+bool has_mesh(std::span<const std::uint32_t> meshes, std::size_t mesh) {
   return std::ranges::find(meshes, mesh) != meshes.end();
 }
 
@@ -29,30 +29,30 @@ std::vector<const Body*> bodies_of_meshes(const RenderInput& input) {
 }
 
 /// Common properties of the meshes of a field: one of the first two, or none of them and the boundary.
-struct Source {
+struct SurfaceKind {
   const Body* group = nullptr;
-  const EntrySampler* entries = nullptr;
+  const FieldSource* source = nullptr;
   float eta = 0;
   bool is_partly_opaque = false;
-  friend bool operator==(const Source&, const Source&) = default;
+  friend bool operator==(const SurfaceKind&, const SurfaceKind&) = default;
 };
 
-Source source_of(const RenderInput& input, std::span<const EntrySampler> entry_samplers, const Body* body,
-                 std::size_t mesh) {
+SurfaceKind kind_of(const RenderInput& input, std::span<const FieldSource> sources, const Body* body,
+                    std::size_t mesh) {
   const Shape& shape = input.scene.shapes[mesh];
   if (!shape.medium) return {.eta = shape.gloss ? float(shape.gloss->eta) : 0};
   const Medium& medium = input.scene.media[*shape.medium];
-  Source source{.group = body, .eta = float(medium.eta), .is_partly_opaque = is_partly_opaque(medium)};
-  for (const EntrySampler& sampler : entry_samplers)
-    if (has_mesh(sampler.meshes(), mesh)) source.entries = &sampler;
-  return source;
+  SurfaceKind kind{.group = body, .eta = float(medium.eta), .is_partly_opaque = is_partly_opaque(medium)};
+  for (const FieldSource& source : sources)
+    if (has_mesh(source.meshes, mesh)) kind.source = &source;
+  return kind;
 }
 
-std::unique_ptr<Field> make_field(const RenderInput& input, const Source& source,
+std::unique_ptr<Field> make_field(const RenderInput& input, const SurfaceKind& kind,
                                   const SurfaceTextures& textures, std::span<const RgbF> albedos) {
-  if (source.group != nullptr) return method_of(source.group->plan.method).field(input, *source.group);
-  if (source.entries != nullptr) return std::make_unique<DirectField>(*source.entries, textures, source.eta);
-  return std::make_unique<LocalField>(input, albedos, source.eta);
+  if (kind.group != nullptr) return method_of(kind.group->plan.method).field(input, *kind.group);
+  if (kind.source != nullptr) return kind.source->make(textures, kind.eta);
+  return std::make_unique<LocalField>(input, albedos, kind.eta);
 }
 
 std::vector<RgbF> albedos_of(const Scene& scene) {
@@ -67,19 +67,19 @@ std::vector<RgbF> albedos_of(const Scene& scene) {
 }  // namespace
 
 Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
-                   std::span<const EntrySampler> entry_samplers) {
+                   std::span<const FieldSource> sources) {
   const std::vector<RgbF> albedos = albedos_of(input.scene);
   const std::vector<const Body*> bodies = bodies_of_meshes(input);
   Fields fields;
-  std::vector<Source> sources;
+  std::vector<SurfaceKind> kinds;
   for (std::size_t mesh = 0; mesh < input.world.meshes.size(); ++mesh) {
-    const Source source = source_of(input, entry_samplers, bodies[mesh], mesh);
-    const auto known = std::ranges::find(sources, source);
-    fields.of_mesh.push_back(std::size_t(known - sources.begin()));
-    if (known != sources.end()) continue;
-    sources.push_back(source);
-    std::unique_ptr<Field> field = make_field(input, source, textures, albedos);
-    if (source.is_partly_opaque) field = std::make_unique<PartlyOpaqueField>(input, std::move(field));
+    const SurfaceKind kind = kind_of(input, sources, bodies[mesh], mesh);
+    const auto known = std::ranges::find(kinds, kind);
+    fields.of_mesh.push_back(std::size_t(known - kinds.begin()));
+    if (known != kinds.end()) continue;
+    kinds.push_back(kind);
+    std::unique_ptr<Field> field = make_field(input, kind, textures, albedos);
+    if (kind.is_partly_opaque) field = std::make_unique<PartlyOpaqueField>(input, std::move(field));
     fields.all.push_back(std::move(field));
   }
   return fields;

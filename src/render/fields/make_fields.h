@@ -2,25 +2,31 @@
 // Field of each mesh.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "methods/direct/entry_sampler.h"
-#include "opaline/render/render.h"
-#include "render/fields/field.h"
+#include "subsurface/field.h"
+#include "subsurface/render_input.h"
 
 namespace opaline {
+
+/// Field of some meshes, by a method that has no bodies.
+struct FieldSource {
+  std::span<const std::uint32_t> meshes;
+  /// in    textures: outlive the field; eta: of the boundary
+  std::function<std::unique_ptr<Field>(const SurfaceTextures& textures, float eta)> make;
+};
 
 struct Fields {
   std::vector<std::unique_ptr<Field>> all;
   std::vector<std::size_t> of_mesh;  ///< an index into `all` for each mesh of the world
 };
 
-/// in    entry_samplers: of Method::direct, one per group; must outlive the fields, as the input and the
-///       textures
+/// in    sources: fields of meshes without a body; must outlive the fields, as the input and the textures
 Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
-                   std::span<const EntrySampler> entry_samplers);
+                   std::span<const FieldSource> sources);
 
 /// Shadow rays from a hit to each light with an area: the camera rays of a pixel share the setting's.
 int light_samples_of_ray(const Scene& scene);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "methods/method.h"
 #include "render/fields/make_fields.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {

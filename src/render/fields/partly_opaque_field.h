@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "opaline/render/render.h"
-#include "render/fields/field.h"
+#include "subsurface/field.h"
+#include "subsurface/render_input.h"
 
 namespace opaline {
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <vector>
 
+#include "core/random.h"
 #include "exitance/near_samples.h"
-#include "opaline/core/random.h"
-#include "opaline/exitance/refined_stake.h"
+#include "exitance/refined_stake.h"
 
 namespace opaline {
 namespace {

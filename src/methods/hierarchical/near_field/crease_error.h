@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "opaline/exitance/evaluate.h"
+#include "exitance/evaluate.h"
 
 namespace opaline {
 

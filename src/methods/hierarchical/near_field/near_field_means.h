@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "methods/hierarchical/near_field/irradiance_lattice.h"
+#include "irradiance/irradiance_lattice.h"
 #include "methods/hierarchical/near_field/near_kernel.h"
 
 namespace opaline {

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <utility>
 
+#include "core/random.h"
+#include "exitance/refined_stake.h"
+#include "lights/light.h"
 #include "methods/hierarchical/hierarchical_state.h"
-#include "opaline/core/random.h"
-#include "opaline/exitance/refined_stake.h"
-#include "opaline/lights/light.h"
 
 namespace opaline {
 namespace {

@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "methods/hierarchical/near_field/irradiance_lattice.h"
+#include "bodies/body.h"
+#include "exitance/evaluate.h"
+#include "irradiance/irradiance_lattice.h"
 #include "methods/hierarchical/near_field/near_field_means.h"
 #include "methods/hierarchical/near_field/near_kernel.h"
-#include "opaline/exitance/evaluate.h"
-#include "opaline/render/precompute.h"
 
 namespace opaline {
 

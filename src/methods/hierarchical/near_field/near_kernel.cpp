@@ -7,8 +7,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/random.h"
 #include "methods/hierarchical/hierarchical_state.h"
-#include "opaline/core/random.h"
 
 namespace opaline {
 namespace {

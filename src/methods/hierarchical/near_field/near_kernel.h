@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-#include "opaline/exitance/evaluate.h"
-#include "opaline/render/precompute.h"
+#include "bodies/body.h"
+#include "exitance/evaluate.h"
 
 namespace opaline {
 

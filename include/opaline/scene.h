@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene as plain data.
+//
+// Conventions, everywhere in the project: right-handed coordinates, +y up, normals outward, directions point
+// away from the surface, lengths in mm, coefficients in 1/mm, irradiance and radiant exitance in W/mm^2,
+// radiance in W/(mm^2 sr), colours linear Rec.709, eta = index of refraction inside / outside. Loading a
+// scene converts its units to mm once (mm_per_unit); nothing after it converts again.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "opaline/enumerations.h"
+#include "opaline/error.h"
+#include "opaline/vec3.h"
+
+namespace opaline {
+
+/// Where a record of a scene was written.
+struct SourcePlace {
+  std::string file;          ///< the scene file, or "--set path=value"; empty: made by a program
+  int line = 0, column = 0;  ///< as in Error
+  /// Where a thing is written is no part of what it is: scenes that differ in blanks alone are equal.
+  friend bool operator==(const SourcePlace&, const SourcePlace&) { return true; }
+};
+
+/// Affine map p -> x p.x + y p.y + z p.z + translation.
+struct Transform {
+  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, translation{};
+  friend bool operator==(const Transform&, const Transform&) = default;
+};
+
+inline Vec3d transform_point(const Transform& t, const Vec3d& p) {
+  return t.x * p.x + t.y * p.y + t.z * p.z + t.translation;
+}
+
+/// First `first`, then `second`.
+inline Transform compose(const Transform& second, const Transform& first) {
+  const auto linear = [&](const Vec3d& v) { return second.x * v.x + second.y * v.y + second.z * v.z; };
+  return {linear(first.x), linear(first.y), linear(first.z), transform_point(second, first.translation)};
+}
+
+// ---- textures -------------------------------------------------------------------------------------------
+
+class TextureFile;
+/// An image replacing a constant, mapped by the mesh's UVs.
+struct Texture {
+  std::shared_ptr<const TextureFile> file;
+  Rgb scale{1, 1, 1};       ///< factor on its colours; the first one on its numbers
+  std::size_t channel = 0;  ///< channel of the file, for a number
+  /// From UVs to the image, about its upper left corner: scaled, rotated (degrees), translated
+  /// (KHR_texture_transform).
+  std::array<double, 2> uv_offset{0, 0}, uv_scale{1, 1};
+  double uv_rotation = 0;
+  bool is_relative = false;  ///< scaled to a mean of 1: its texels may exceed 1, unlike other colours
+  SourcePlace place{};
+  friend bool operator==(const Texture&, const Texture&) = default;
+};
+
+/// An anisotropic boundary, with different roughness along and across a tangent: the direction of u, or
+/// without UVs the horizontal one, perpendicular to +y.
+struct Grain {
+  double anisotropy = 0;  ///< [0, 1], specular_roughness_anisotropy of OpenPBR: 0 is isotropic
+  double rotation = 0;    ///< rotation of the tangent about the normal, counterclockwise, degrees
+  friend bool operator==(const Grain&, const Grain&) = default;
+};
+
+// ---- media ----------------------------------------------------------------------------------------------
+
+/// Reduced coefficients per channel, 1/mm, finite and >= 0.
+struct PhysicalMedium {
+  Rgb sigma_a, sigma_s_prime;
+  friend bool operator==(const PhysicalMedium&, const PhysicalMedium&) = default;
+};
+
+/// Artist's parameters after OpenPBR.
+struct ArtistMedium {
+  Rgb subsurface_color;   ///< total diffuse reflectance per transmitted flux, [0, 1]
+  Rgb subsurface_radius;  ///< 1/sigma_t per channel, mm, >= 0 (radius times subsurface_radius_scale)
+  double anisotropy = 0;  ///< mean cosine g, (-1, 1)
+  friend bool operator==(const ArtistMedium&, const ArtistMedium&) = default;
+};
+
+/// Default profile of a medium.
+struct ChosenProfile {
+  ProfileKind kind = ProfileKind::dipole;
+  double thickness = std::numeric_limits<double>::infinity();  ///< as Medium::thickness
+  NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;
+  friend bool operator==(const ChosenProfile&, const ChosenProfile&) = default;
+};
+
+struct Medium {
+  std::string name;
+  std::variant<PhysicalMedium, ArtistMedium> coefficients;
+  double eta = 1.3;
+  std::optional<ProfileKind> profile = ProfileKind::dipole;  ///< none: chosen for each body (choose_models.h)
+  SourcePlace place{};
+  /// Mean cosine g of the scattering angle, (-1, 1), with reduced coefficients. Used by random walks only;
+  /// diffusion depends on (1 - g) sigma_s alone.
+  double scatter_anisotropy = 0;
+  /// Thickness of the plates and bodies made of it, mm, > 0; infinite: thick. Used by ProfileKind::multipole
+  /// only.
+  double thickness = std::numeric_limits<double>::infinity();
+  double specular_roughness = 0;  ///< roughness of the dielectric boundary, [0, 1]; GGX's alpha is its square
+  /// Tint of its light: t = tint x texture, in [0, 1] except for textures with mean 1.
+  Rgb tint{1, 1, 1};
+  std::optional<Texture> tint_texture{}, roughness_texture{};
+  TextureMix texture_mix = TextureMix::split;
+  /// Texture of ArtistMedium::subsurface_radius over its mean; the record stores the mean.
+  std::optional<Texture> radius_texture{};
+  /// Fraction of the light scattering inside, [0, 1]; the rest is reflected diffusely at the surface, by
+  /// base_color.
+  double subsurface_weight = 1;
+  Rgb base_color{.8, .8, .8};
+  std::optional<Texture> weight_texture{}, base_texture{};     ///< factors
+  ChosenProfile chosen{};                                      ///< if profile is none
+  NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< for ProfileKind::normalized_diffusion
+  Grain grain{};                                               ///< grain of the boundary
+  friend bool operator==(const Medium&, const Medium&) = default;
+};
+
+// ---- shapes ---------------------------------------------------------------------------------------------
+
+struct MeshFile {
+  std::string path;         ///< as opened: the scene file's folder precedes a relative path
+  bool fill_holes = false;  ///< closes every hole before rendering
+  /// If set: scales the largest side of the bounding box to this length (mm), centres x and z on the origin,
+  /// and moves the mesh to y >= 0; applied before the shape's transform.
+  std::optional<double> fit_size;
+  /// Part of a file with several meshes: the indices "mesh/primitive" of a glTF asset, or the material name
+  /// of an OBJ. Empty: the whole file.
+  std::string part{};
+  /// True: vertex colours multiply the surface's colour; none: they do unless a texture defines that colour.
+  std::optional<bool> vertex_colors{};
+  /// Without normals: edges with a larger angle are creases, degrees, [0, 180]; none: by the file.
+  std::optional<double> crease_angle{};
+  friend bool operator==(const MeshFile&, const MeshFile&) = default;
+};
+
+/// Tessellation levels of built-in curved shapes: 4^fineness times as many triangles. The largest omits
+/// 0.00005 of a sphere's area, each lower one four times as much.
+constexpr int kMostFineness = 6, kLeastFineness = 4;
+
+// Built-in shapes; lengths in mm. `Slab` is a box with a separate thickness: x and z extent, thickness along
+// y.
+struct SphereShape {
+  Vec3d center{};
+  double radius = 1;
+  int fineness = kMostFineness;  ///< kLeastFineness to kMostFineness
+  friend bool operator==(const SphereShape&, const SphereShape&) = default;
+};
+struct BoxShape {
+  Vec3d low{-1, -1, -1}, high{1, 1, 1};
+  friend bool operator==(const BoxShape&, const BoxShape&) = default;
+};
+struct QuadShape {  ///< the parallelogram corner, corner + u, corner + u + v, corner + v; normal along u x v
+  Vec3d corner{}, u{1, 0, 0}, v{0, 1, 0};
+  friend bool operator==(const QuadShape&, const QuadShape&) = default;
+};
+struct SlabShape {
+  Vec3d center{};
+  double width = 1, depth = 1, thickness = 1;  ///< along x, z, y
+  friend bool operator==(const SlabShape&, const SlabShape&) = default;
+};
+struct TorusShape {  ///< axis along y
+  Vec3d center{};
+  double major_radius = 1, minor_radius = 0.25;
+  int fineness = kMostFineness;  ///< kLeastFineness to kMostFineness
+  friend bool operator==(const TorusShape&, const TorusShape&) = default;
+};
+
+using ShapeSource = std::variant<MeshFile, SphereShape, BoxShape, QuadShape, SlabShape, TorusShape>;
+
+/// Specular reflection of an opaque surface: GGX facets of a dielectric over its colour, or of a metal with
+/// that colour.
+struct Gloss {
+  double metalness = 0, roughness = 1;  ///< [0, 1]; the square of the latter is GGX's alpha
+  std::optional<Texture> metalness_texture{}, roughness_texture{};
+  double eta = 1.5;  ///< eta of the dielectric
+  Grain grain{};
+  friend bool operator==(const Gloss&, const Gloss&) = default;
+};
+
+/// Reflectance of an opaque shape without one in the scene.
+inline constexpr Rgb kDefaultReflectance{0.5, 0.5, 0.5};
+
+struct Shape {
+  std::string name;
+  ShapeSource source;
+  Transform to_world;  ///< from mm in the shape's space to mm in the world
+  NormalMode normals = NormalMode::smooth;
+  /// Index into Scene::media, or none for an opaque Lambert surface of `reflectance`.
+  std::optional<std::size_t> medium;
+  Rgb reflectance = kDefaultReflectance;
+  bool has_reflectance = false;  ///< given in the scene; otherwise vertex colours replace it
+  /// Translucent shapes with the same non-empty group form one body; light never bleeds between others.
+  std::string group;
+  SourcePlace place{};                           ///< place of its source
+  std::optional<Texture> reflectance_texture{};  ///< times the reflectance
+  std::optional<Texture> normal_map{};           ///< its scale applies to the slopes
+  std::optional<Texture> bump_map{};             ///< heights; its scale is in mm
+  std::optional<Gloss> gloss{};                  ///< specular reflection of an opaque shape; none: diffuse
+  friend bool operator==(const Shape&, const Shape&) = default;
+};
+
+// ---- lights ---------------------------------------------------------------------------------------------
+
+struct PointLight {
+  static constexpr std::string_view kType = "point";
+  static constexpr bool kCanBeSeen = false;  ///< the key `visible` exists
+  Vec3d position;
+  Rgb intensity;  ///< W/sr; irradiance at distance d mm is intensity / d^2 in W/mm^2
+  friend bool operator==(const PointLight&, const PointLight&) = default;
+};
+struct SpotLight {  ///< a point light within a cone
+  static constexpr std::string_view kType = "spot";
+  static constexpr bool kCanBeSeen = false;
+  Vec3d position;
+  Vec3d direction;          ///< unit, axis of emission
+  Rgb intensity;            ///< on the axis, W/sr
+  double outer_angle = 45;  ///< from the axis to the rim, degrees, (0, 90]
+  double inner_angle = 0;   ///< from the axis to the beginning of the falloff, degrees, below outer_angle
+  friend bool operator==(const SpotLight&, const SpotLight&) = default;
+};
+struct DirectionalLight {
+  static constexpr std::string_view kType = "directional";
+  static constexpr bool kCanBeSeen = true;
+  Vec3d direction;   ///< unit, of propagation
+  Rgb irradiance;    ///< on a surface facing it, W/mm^2
+  double angle = 0;  ///< the disc's full angle, degrees, [0, 90]; 0: parallel light
+  friend bool operator==(const DirectionalLight&, const DirectionalLight&) = default;
+};
+struct SphereLight {
+  static constexpr std::string_view kType = "sphere";
+  static constexpr bool kCanBeSeen = true;
+  Vec3d center;
+  double radius;
+  Rgb radiance;
+  friend bool operator==(const SphereLight&, const SphereLight&) = default;
+};
+struct QuadLight {  ///< emits on the side of u x v only
+  static constexpr std::string_view kType = "quad";
+  static constexpr bool kCanBeSeen = true;
+  Vec3d corner, u, v;
+  Rgb radiance;
+  friend bool operator==(const QuadLight&, const QuadLight&) = default;
+};
+struct Surroundings {  ///< uniform radiance from all directions
+  static constexpr std::string_view kType = "surroundings";
+  static constexpr bool kCanBeSeen = false;
+  Rgb radiance;
+  friend bool operator==(const Surroundings&, const Surroundings&) = default;
+};
+class EnvironmentPicture;
+/// Environment map. A coloured image becomes three lights of one name, one per channel, so each light's
+/// irradiance is one number, as for other lights.
+struct EnvironmentLight {
+  static constexpr std::string_view kType = "environment";
+  static constexpr bool kCanBeSeen = true;
+  std::shared_ptr<const EnvironmentPicture> picture;
+  Rgb strength{1, 1, 1};               ///< factor on its radiance
+  double rotation = 0;                 ///< about +y, counterclockwise seen from above, degrees
+  std::optional<std::size_t> channel;  ///< its only channel; none: the image is grey
+  friend bool operator==(const EnvironmentLight&, const EnvironmentLight&) = default;
+};
+class LightTree;
+/// Many lights as one, sampled a few at a time at each point. Scene files do not contain it: with_trees
+/// (lights/light_tree.h) makes it from many lights in the world's space. Lights of different colours become
+/// three of one name, one per channel.
+struct ManyLights {
+  static constexpr std::string_view kType = "many";
+  static constexpr bool kCanBeSeen = false;
+  std::shared_ptr<const LightTree> tree;
+  Rgb strength{1, 1, 1};               ///< times the tree's colours
+  std::optional<std::size_t> channel;  ///< its only channel; none: all lights have one colour
+  friend bool operator==(const ManyLights&, const ManyLights&) = default;
+};
+
+using LightSource = std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, QuadLight,
+                                 Surroundings, EnvironmentLight, ManyLights>;
+
+struct Light {
+  std::string name;  ///< equal for the channels of one image
+  LightSource source;
+  SourcePlace place{};
+  bool is_seen = true;  ///< by the camera; reflections show the light in any case
+  friend bool operator==(const Light&, const Light&) = default;
+};
+
+// ---- image ----------------------------------------------------------------------------------------------
+
+struct Camera {
+  Vec3d position{0, 0, 5}, look_at{0, 0, 0}, up{0, 1, 0};
+  double field_of_view = 40;  ///< full vertical angle, degrees, (0, 180)
+  friend bool operator==(const Camera&, const Camera&) = default;
+};
+
+struct Film {
+  std::array<int, 2> resolution{512, 512};  ///< width, height
+  std::optional<std::array<int, 4>> crop;   ///< x0, y0, x1, y1 in pixels, upper ends excluded; from top left
+  int samples_per_pixel = 1;
+  PixelFilter filter =
+      PixelFilter::box;  ///< box of one pixel; gaussian of standard deviation 0.5, radius 1.5
+  bool half = true;      ///< 16-bit EXR; false: 32-bit
+  double exposure = 0;   ///< stops, for PNG only
+  ViewTransform view = ViewTransform::soft;                 ///< for PNG only
+  FilmColorSpace color_space = FilmColorSpace::lin_rec709;  ///< for EXR only
+  friend bool operator==(const Film&, const Film&) = default;
+};
+
+/// Default entry samples of `direct`, without Settings::entry_samples and Settings::until_error.
+inline constexpr std::size_t kDefaultEntrySamples = 256;
+
+/// Switches for experiments with the methods themselves (docs/laboratory.md).
+struct Laboratory {
+  InstructionSet instruction_set = InstructionSet::automatic;  ///< dual_tree
+  double max_solid_angle = 0.05;  ///< classic: opens a node if area / distance^2 exceeds it, sr
+  bool near_field = true;         ///< splits the kernel near the shading point
+  NearIrradiance near_irradiance = NearIrradiance::mixed;
+  EntryStrategy entry_strategy = EntryStrategy::disc_axes;  ///< direct: sampling of entry points
+  friend bool operator==(const Laboratory&, const Laboratory&) = default;
+};
+
+struct Settings {
+  Method method = Method::hierarchical;
+  EvaluatorKind evaluator = EvaluatorKind::automatic;
+  double tolerance = 0.005;  ///< dual_tree, surface_cache: p99 of the relative error against the exact sum
+  std::optional<double> sample_spacing;  ///< sqrt(area / samples), mm; none: from the mean free path
+  std::optional<std::size_t> samples;    ///< per group; none: from the spacing
+  std::size_t max_samples = 2000000;     ///< per group
+  int light_samples = 64;                ///< shadow rays per sample (opaque: pixel) and light with an area
+  std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
+  std::optional<double>
+      until_error;             ///< direct, volume: stop at this estimated relative error of the pixels, cells
+  bool reenter = true;         ///< volume: enables re-entry of light into a body
+  double cell_size = 2;        ///< volume_diffusion: size of the cells at the surface, mean free paths
+  std::optional<int> bounces;  ///< 1: one bounce of light between surfaces; none: bounces_of()
+  std::uint64_t seed = 0;
+  int reference_frame = 1;  ///< frame of the samples' placement; in others, they move with the surface
+  Laboratory laboratory{};
+  friend bool operator==(const Settings&, const Settings&) = default;
+};
+
+struct Scene {
+  std::string file;         ///< for messages
+  std::string translation;  ///< summary of an asset's import, one line; empty: a scene file
+  /// Warnings of deprecated spellings and of deviations from an asset, one line each.
+  std::vector<std::string> warnings;
+  std::size_t asset_bytes = 0;  ///< memory of an asset's records
+  double mm_per_unit = 1;       ///< unit of the file, for output in its units; all lengths here are mm
+  std::vector<Medium> media;
+  std::vector<Shape> shapes;
+  std::vector<Light> lights;
+  Camera camera;
+  Film film;
+  Settings settings;
+  /// Frames from the first key of the camera or film to the last, if nothing else is keyed: images of the
+  /// same surfaces under the same light; otherwise 1.
+  std::size_t camera_frames = 1;
+  friend bool operator==(const Scene&, const Scene&) = default;
+};
+
+// ---- loading -------------------------------------------------------------------------------------------
+
+/// Reads and checks a scene file, or an asset (GLB, glTF, OBJ) as what import_asset makes of it; lengths are converted to mm by its mm_per_unit.
+/// in    overrides: "media.marble.eta=1.4": a path of keys (array elements by index or by "name") and a JSON
+/// value
+///       (a value that is not JSON is taken as a string), applied before checking
+/// error Error{bad_input} with file, line and column, what was expected, what was found, and the nearest
+/// valid
+///       name: no such file, broken JSON, unknown or duplicate key, wrong type, value out of range
+/// frame: which one, of values and mesh files that change.
+Scene load_scene(const std::string& path, std::span<const std::string> overrides = {}, int frame = 1);
+
+/// The same from text; `file` stands in messages and its folder in front of relative mesh paths.
+Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides = {},
+                  int frame = 1);
+
+/// A medium by itself: a JSON object such as a member of a scene's `media`; its name is "medium".
+/// in    file: what messages call the text
+/// error as parse_scene
+Medium parse_medium(std::string_view text, const std::string& file);
+
+}  // namespace opaline

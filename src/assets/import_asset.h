@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Conversion of an asset of another program (GLB, glTF 2.0, OBJ with MTL, PLY, STL, OFF) to the text of a
+// scene file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace opaline {
+
+struct ImportedAsset {
+  std::string text;                      ///< a scene file, see scenes/README.md
+  std::vector<std::string> translated;   ///< conversions of values, a line each
+  std::vector<std::string> not_carried;  ///< parts without import, a line each
+  std::vector<std::string> warnings;     ///< missing files and other changes of the image, a line each
+  std::string summary;                   ///< one line
+  std::size_t bytes = 0;                 ///< memory of its records during reading
+};
+
+/// True for a file name with an asset's extension, in upper or lower case.
+bool is_asset_name(const std::string& path);
+
+/// in    path: an asset; mesh_path: its name in the scene file, relative to that file's folder; material: a
+///       MaterialX file replacing the asset's materials, "skin.mtlx" or "skin.mtlx#name" of a surface or
+///       material in it
+/// out   a valid scene with a visible shape: with a camera and lights, the asset's or default ones
+/// error Error{bad_input} naming the file and the record: missing, broken, or without a triangle
+ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
+                           const std::string& material = {});
+
+}  // namespace opaline

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bodies/body.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/random.h"
+#include "lights/light.h"
+#include "lights/light_tree.h"
+#include "volume/cut_outer_surface.h"
+
+namespace opaline {
+std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {
+  return hash_bits(settings.seed, group);
+}
+
+SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group, SurfaceCells* cells) {
+  const GroupPlan& plan = input.plan.groups[group];
+  return sample_surface({.world = input.world,
+                         .meshes = plan.meshes,
+                         .count = plan.samples,
+                         .seed = sampling_seed(input.scene.settings, group),
+                         .monitor = input.monitor},
+                        cells);
+}
+
+std::uint64_t irradiance_seed(const Settings& settings, std::size_t group) {
+  return hash_bits(settings.seed, group + 1000);
+}
+
+std::uint64_t point_irradiance_seed(const Settings& settings) {
+  return hash_bits(settings.seed, 2000);
+}
+
+std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
+                                         std::span<const SurfaceSample> samples,
+                                         std::span<const Light> lights) {
+  const Settings& settings = input.scene.settings;
+  const GroupPlan& plan = input.plan.groups[group];
+  const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
+  return compute_irradiance({input.rays, samples, lights, profile.eta, settings.light_samples,
+                             irradiance_seed(settings, group), input.monitor, plan.cell > 0});
+}
+
+std::vector<Light> recentred_lights(const Scene& scene, const World& world) {
+  std::vector<Light> lights;
+  for (const Light& light : scene.lights) lights.push_back(recentred(light, world.origin, world.unit));
+  return with_trees(std::move(lights));
+}
+
+Rgb reduced_absorption(Medium medium) {
+  if (auto* artist = std::get_if<ArtistMedium>(&medium.coefficients))
+    for (std::size_t c = 0; c < 3; ++c)  // by the colour alone; no radius would hide it
+      if (!(artist->subsurface_radius[c] > 0)) artist->subsurface_radius[c] = 1;
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  Rgb absorbed{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double decay =
+        profile.mean_free_path[c] / profile.diffuse_mean_free_path[c];  // its square is 3 (1 - alpha')
+    absorbed[c] = std::min(1.0, decay * decay / 3);
+  }
+  return absorbed;
+}
+
+CutSurface cut_surface(const PrecomputeInput& input, const Body& body) {
+  return cut_outer_surface(input.rays, input.world, body.plan.meshes, body.plan.cell / input.world.unit,
+                           body.plan.cell_parts);
+}
+
+std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights) {
+  std::vector<RgbF> irradiance = combine_lights(body.transfers, lights);
+  irradiance.resize(body.surface.samples.size());  // dark without lights
+  for (std::size_t i = 0; i < body.entering.size(); ++i) irradiance[i] = irradiance[i] * body.entering[i];
+  return irradiance;
+}
+
+}  // namespace opaline

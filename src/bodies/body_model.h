@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The radial profile of a medium in a body, and the expected error of the models there.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "opaline/scene.h"
+
+namespace opaline {
+
+struct BodyModel {
+  ChosenProfile profile;
+  bool is_chosen = false;  ///< and not named by the scene
+  std::string reason;
+  /// Rms of the radiant exitance against random walks over the mean, of the worst channel; none: unknown, of a profile
+  /// that the scene names, and of a mesh that is open.
+  std::optional<double> expected_error;
+  std::optional<double> expected_error_of_diffusion;  ///< the same of Method::volume_diffusion
+};
+
+}  // namespace opaline

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bodies/surface_textures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/cancel_check.h"
+#include "image/texture_file.h"
+#include "opaline/error.h"
+#include "scene/scene_properties.h"
+#include "scene/source_place.h"
+
+namespace opaline {
+namespace {
+
+/// UVs count from the lower left corner, textures from the upper left one.
+TexturePlace texture_place(const Texture& texture, const SurfaceUv& at, const Footprint& footprint) {
+  const double angle = texture.uv_rotation * std::numbers::pi / 180;
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  const auto turned = [&](double u, double v) {
+    const double x = u * texture.uv_scale[0], y = v * texture.uv_scale[1];
+    return std::array<double, 2>{cosine * x + sine * y, cosine * y - sine * x};
+  };
+  const auto side = [&](const Vec3f& along) {
+    const auto [u, v] = turned(double(dot(at.gradient_u, along)), -double(dot(at.gradient_v, along)));
+    return std::array<float, 2>{float(u), float(v)};
+  };
+  const auto [u, v] = turned(double(at.uv[0]), 1 - double(at.uv[1]));
+  return {float(u + texture.uv_offset[0]), float(v + texture.uv_offset[1]), side(footprint.x),
+          side(footprint.y)};
+}
+
+std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Place& place) {
+  return texture.file->at(texture_place(texture, *place.uv, place.footprint));
+}
+
+float number_of(const Texture& texture, const SurfaceTextures::Place& place) {
+  return std::clamp(looked_up(texture, place)[texture.channel] * float(texture.scale.x), 0.0f, 1.0f);
+}
+
+RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
+  const std::array<float, 4> texel = looked_up(texture, place);
+  RgbF color;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float value = std::max(0.0f, texel[c]) * float(texture.scale[c]);
+    color[c] = texture.is_relative ? value : std::min(value, 1.0f);
+  }
+  return color;
+}
+
+// 8-bit normal maps have no exact zero: the values 127 and 128 on both sides of it count as zero.
+float slope_of(float value) {
+  const float slope = 2 * value - 1;
+  return std::abs(slope) < 1.01f / 255 ? 0 : slope;
+}
+
+/// error if a tile of the texture is missing at the centroid of a triangle
+void check_tiles(const Texture& texture, const Mesh& mesh, const std::string& shape) {
+  if (texture.file->has_tile(-1, -1)) return;
+  for (const CornerUvs& uvs : mesh.uvs) {
+    SurfaceUv middle;
+    for (const auto& corner : uvs)
+      for (std::size_t k = 0; k < 2; ++k) middle.uv[k] += corner[k] / 3;
+    const TexturePlace place = texture_place(texture, middle, {});
+    const int column = int(std::floor(place.u)), row = int(std::floor(1 - place.v));
+    if (texture.file->has_tile(column, row)) continue;
+    throw told_at(texture.place,
+                  bad_file(texture.file->path(), "has no tile where the UVs of '" + shape + "' need one",
+                           "a file " + std::to_string(1001 + column + 10 * row)));
+  }
+}
+
+RgbF powered(const RgbF& value, double exponent) {
+  RgbF result;
+  for (std::size_t c = 0; c < 3; ++c)
+    result[c] = exponent == 1    ? value[c]
+                : exponent == .5 ? std::sqrt(value[c])
+                : exponent == 0  ? 1.0f
+                                 : std::pow(value[c], float(exponent));
+  return result;
+}
+
+/// Directions of u and v in the shading tangent plane; zeros if the UVs are degenerate.
+struct TangentFrame {
+  Vec3f tangent{}, bitangent{};
+};
+
+/// From the mesh's tangent, if present. Its handedness refers to the outside of the surface.
+TangentFrame frame_of(const SurfaceTextures::Place& place, const SurfacePoint& point) {
+  const auto& [direction, handedness] = place.tangent;
+  const Vec3f own = normalized(direction - point.normal * dot(direction, point.normal));
+  if (own != Vec3f{}) return {own, cross(point.normal, own) * (place.from_behind ? -handedness : handedness)};
+  if (!place.uv) return {};
+  const Vec3f across_v = cross(place.uv->gradient_v, point.geometric);
+  const float side = dot(place.uv->gradient_u, across_v);
+  if (!(std::abs(side) > 0)) return {};
+  const Vec3f along = across_v * (side > 0 ? 1.0f : -1.0f);
+  const Vec3f tangent = normalized(along - point.normal * dot(along, point.normal));
+  return {tangent, cross(point.normal, tangent) * (side > 0 ? 1.0f : -1.0f)};
+}
+
+/// Orientation of a tilted normal: 1, or -1 if seen from behind.
+float outward(const SurfaceTextures::Place& place) {
+  return place.from_behind ? -1.0f : 1.0f;
+}
+
+void map_normal(const Texture& texture, const SurfaceTextures::Place& place, SurfacePoint& point) {
+  const std::array<float, 4> texel = looked_up(texture, place);
+  const float strength = float(texture.scale.x) * outward(place);
+  const float x = slope_of(texel[0]) * strength, y = slope_of(texel[1]) * strength;
+  if (x == 0 && y == 0) return;
+  const auto [tangent, bitangent] = frame_of(place, point);
+  if (tangent == Vec3f{}) return;
+  point.normal =
+      normalized(tangent * x + bitangent * y + point.normal * std::max(2 * texel[2] - 1, 1.0f / 255));
+}
+
+/// Height gradient of the height over the surface, mm per world unit.
+Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
+  const auto [along_u, along_v] =
+      texture.file->slope(texture_place(texture, *place.uv, place.footprint), texture.channel);
+  // Angle of the image's u and v, by the mesh's.
+  const double angle = texture.uv_rotation * std::numbers::pi / 180;
+  const double cosine = std::cos(angle), sine = std::sin(angle);
+  const Vec3f x = place.uv->gradient_u * float(texture.uv_scale[0]),
+              y = place.uv->gradient_v * float(-texture.uv_scale[1]);
+  const Vec3f of_u = x * float(cosine) + y * float(sine), of_v = y * float(cosine) - x * float(sine);
+  return (of_u * along_u + of_v * along_v) * float(texture.scale.x);
+}
+
+/// Around +y, as turned on a lathe; where the normal is +y itself, along x.
+TangentFrame level_frame(const Vec3f& normal) {
+  Vec3f tangent{normal.z, 0, -normal.x};
+  if (dot(tangent, tangent) < 1e-12f) tangent = Vec3f{1, 0, 0} - normal * normal.x;
+  tangent = normalized(tangent);
+  return {tangent, cross(normal, tangent)};
+}
+
+const Texture* pointer_to(const std::optional<Texture>& texture) {
+  return texture ? &*texture : nullptr;
+}
+
+}  // namespace
+
+SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world_(world) {
+  const bool is_followed = follows_textures_inside(scene.settings.method);
+  for (std::size_t m = 0; m < scene.shapes.size(); ++m) {
+    const Shape& shape = scene.shapes[m];
+    OfMesh& own = of_mesh_.emplace_back();
+    own.normals = pointer_to(shape.normal_map);
+    own.heights = pointer_to(shape.bump_map);
+    if (shape.medium) {
+      const Medium& medium = scene.media[*shape.medium];
+      const bool is_inside = is_followed && has_color_inside(medium);
+      (is_inside ? own.color_inside : own.tint) = pointer_to(medium.tint_texture);
+      if (is_followed && varies_inside(medium)) own.radius_inside = pointer_to(medium.radius_texture);
+      own.roughness = pointer_to(medium.roughness_texture);
+      own.factor = medium.tint;
+      if (is_partly_opaque(medium)) {
+        own.partly_opaque = &medium;
+        own.weight = pointer_to(medium.weight_texture);
+        own.base = pointer_to(medium.base_texture);
+      }
+      own.at_entry = medium.texture_mix == TextureMix::pre    ? 1
+                     : medium.texture_mix == TextureMix::post ? 0
+                                                              : .5;
+      own.at_exit = 1 - own.at_entry;
+    } else {
+      own.tint = pointer_to(shape.reflectance_texture);
+      if (shape.gloss) own.roughness = pointer_to(shape.gloss->roughness_texture);
+      if (shape.gloss) own.metalness = pointer_to(shape.gloss->metalness_texture);
+    }
+    own.has_colors = uses_vertex_colors(scene, shape, world.meshes[m]);
+    if (own.has_colors && !shape.medium && !shape.has_reflectance)
+      own.factor = Rgb(1 / kDefaultReflectance.x);
+    own.has_tint = own.tint != nullptr || own.factor != Rgb(1) || own.weight != nullptr || own.has_colors;
+    own.grain = grain_of(scene, shape);
+    own.has_uv = uvs_of(scene, shape) != MeshUvs::unread && !world.meshes[m].uvs.empty();
+    own.has_tangents = !world.meshes[m].tangents.empty();
+    is_empty_ = is_empty_ && !own.has_tint && !needs_uvs(scene, shape) && own.grain == nullptr &&
+                own.partly_opaque == nullptr;
+    for (const Texture* texture : textures_of(scene, shape))
+      check_tiles(*texture, world.meshes[m], shape.name);
+  }
+}
+
+bool SurfaceTextures::tints_entering(std::uint32_t mesh) const {
+  return of_mesh_[mesh].has_tint && of_mesh_[mesh].at_entry > 0;
+}
+
+SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
+                                              const Footprint& footprint) const {
+  Place place{mesh, {}, footprint};
+  if (of_mesh_[mesh].has_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
+  if (of_mesh_[mesh].has_tangents) place.tangent = surface_tangent(world_.meshes[mesh], triangle, u, v);
+  if (of_mesh_[mesh].has_colors) place.color = surface_color(world_.meshes[mesh], triangle, u, v);
+  return place;
+}
+
+SurfaceTint SurfaceTextures::tint(const Place& place) const {
+  const OfMesh& own = of_mesh_[place.mesh];
+  const float weight = own.partly_opaque == nullptr ? 1 : float(own.partly_opaque->subsurface_weight);
+  if (!own.has_tint) return {.leaving = RgbF(weight)};
+  RgbF tint(own.factor);
+  if (own.tint != nullptr) {
+    tint = tint * color_of(*own.tint, place);
+  }
+  if (own.has_colors) tint = tint * place.color;
+  if (own.weight != nullptr) tint *= number_of(*own.weight, place);
+  SurfaceTint result{powered(tint, own.at_entry), powered(tint, own.at_exit)};
+  if (weight < 1) result.leaving *= weight;
+  return result;
+}
+
+RgbF SurfaceTextures::reflected(const Place& place) const {
+  const OfMesh& own = of_mesh_[place.mesh];
+  if (own.partly_opaque == nullptr) return {};
+  const float scattered =
+      own.weight != nullptr ? number_of(*own.weight, place) : float(own.partly_opaque->subsurface_weight);
+  RgbF base(own.partly_opaque->base_color);
+  if (own.base != nullptr) base = base * color_of(*own.base, place);
+  if (own.has_colors) base = base * place.color;
+  return base * (1 - scattered);
+}
+
+MediumFactors SurfaceTextures::medium(const Place& place) const {
+  const OfMesh& own = of_mesh_[place.mesh];
+  MediumFactors factors;
+  if (own.color_inside != nullptr) factors.color = color_of(*own.color_inside, place);
+  if (own.radius_inside != nullptr) factors.radius = color_of(*own.radius_inside, place);
+  return factors;
+}
+
+std::optional<float> SurfaceTextures::roughness(const Place& place) const {
+  const Texture* const texture = of_mesh_[place.mesh].roughness;
+  if (texture == nullptr) return {};
+  return number_of(*texture, place);
+}
+
+std::optional<float> SurfaceTextures::metalness(const Place& place) const {
+  const Texture* const texture = of_mesh_[place.mesh].metalness;
+  if (texture == nullptr) return {};
+  return number_of(*texture, place);
+}
+
+Vec3f SurfaceTextures::tangent(const Place& place, const SurfacePoint& point) const {
+  const Grain* const grain = of_mesh_[place.mesh].grain;
+  if (grain == nullptr) return {};
+  TangentFrame frame = frame_of(place, point);
+  if (frame.tangent == Vec3f{}) frame = level_frame(point.normal);
+  const double angle = grain->rotation * std::numbers::pi / 180;
+  return frame.tangent * float(std::cos(angle)) + frame.bitangent * float(std::sin(angle));
+}
+
+void SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
+  const OfMesh& own = of_mesh_[place.mesh];
+  if (own.normals != nullptr) map_normal(*own.normals, place, point);
+  if (own.heights == nullptr) return;
+  const Vec3f rise = height_gradient(*own.heights, place) * float(1 / world_.unit),
+              along = rise - point.normal * dot(rise, point.normal);
+  if (along != Vec3f{}) point.normal = normalized(point.normal - along * outward(place));
+}
+
+bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh) {
+  const auto* file = std::get_if<MeshFile>(&shape.source);
+  if (file == nullptr || mesh.colors.empty()) return false;
+  const bool has_texture = shape.medium ? scene.media[*shape.medium].tint_texture.has_value()
+                                        : shape.reflectance_texture.has_value();
+  return file->vertex_colors.value_or(!has_texture);
+}
+
+std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples) {
+  std::vector<RgbF> tints;
+  if (std::ranges::none_of(samples, [&](const SurfaceSample& s) { return textures.tints_entering(s.mesh); }))
+    return tints;
+  tints.reserve(samples.size());
+  const CancelCheck check;
+  for (const SurfaceSample& s : samples) {
+    check();
+    Footprint footprint;
+    tangent_frame(s.normal, footprint.x, footprint.y);
+    footprint.x *= std::sqrt(s.area);
+    footprint.y *= std::sqrt(s.area);
+    tints.push_back(textures.tint(textures.place(s.mesh, s.triangle, s.u, s.v, footprint)).entering);
+  }
+  return tints;
+}
+
+void add_coordinates(KeyBuilder& key, const Mesh& mesh) {
+  key.add_array(std::span(mesh.uvs));
+  if (!mesh.tangents.empty()) key.add_array(std::span(mesh.tangents));
+}
+
+void add_to_key(KeyBuilder& key, const Texture& texture) {
+  key.add(texture.file->hash())
+      .add(texture.scale)
+      .add(std::uint64_t(texture.channel))
+      .add(texture.is_relative);
+  key.add(texture.uv_offset).add(texture.uv_scale).add(texture.uv_rotation);
+}
+
+StageKey tint_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes,
+                  const StageKey& samples) {
+  const Medium& medium = scene.media[scene.shapes[meshes.front()].medium.value()];
+  const auto has_colors = [&](std::uint32_t m) {
+    return uses_vertex_colors(scene, scene.shapes[m], world.meshes[m]);
+  };
+  const bool has_texture =
+      medium.tint_texture && !(has_color_inside(medium) && follows_textures_inside(scene.settings.method));
+  const bool has_tint = medium.tint != Rgb(1) || has_texture || medium.weight_texture ||
+                        std::ranges::any_of(meshes, has_colors);
+  if (medium.texture_mix == TextureMix::post || !has_tint) return {};
+  KeyBuilder key("entering tint", 1);
+  key.add(samples).add(medium.tint).add(medium.texture_mix);
+  for (const std::uint32_t m : meshes)
+    if (has_colors(m))
+      key.add(std::string("vertex colours")).add(m).add_array(std::span(world.meshes[m].colors));
+  if (!has_texture && !medium.weight_texture) return key.key();
+  if (has_texture) add_to_key(key, *medium.tint_texture);
+  if (medium.weight_texture) add_to_key(key.add(std::string("weight")), *medium.weight_texture);
+  for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
+  return key.key();
+}
+
+StageKey medium_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes) {
+  if (!varies_inside(medium)) return {};
+  const auto& mean = std::get<ArtistMedium>(medium.coefficients);
+  KeyBuilder key("medium inside", 2);
+  key.add(mean.subsurface_color).add(mean.subsurface_radius).add(mean.anisotropy).add(medium.eta);
+  key.add(profile_kind(medium)).add(profile_thickness(medium));
+  if (has_color_inside(medium)) add_to_key(key.add(std::string("color")), *medium.tint_texture);
+  if (medium.radius_texture) add_to_key(key.add(std::string("radius")), *medium.radius_texture);
+  for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
+  return key.key();
+}
+
+Footprint footprint_of(const SurfacePoint& point, const Vec3f& direction, float width) {
+  constexpr float kLeastCosine = 1.0f / 32;  // as oblong as textures are filtered
+  const Vec3f d = normalized(direction);
+  const float cosine = std::abs(dot(point.geometric, d));
+  Vec3f across, along;
+  tangent_frame(point.geometric, across, along);
+  if (cosine < .999f) across = normalized(cross(point.geometric, d));
+  along = cross(point.geometric, across);
+  return {across * width, along * (width / std::max(cosine, kLeastCosine))};
+}
+
+}  // namespace opaline

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Textures of a scene at points of its surfaces.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cache/stage_key.h"
+#include "geometry/surface_point.h"
+#include "geometry/surface_uv.h"
+#include "geometry/world.h"
+#include "sampling/sample_surface.h"
+
+namespace opaline {
+
+/// Filter footprint on a surface: two sides of a parallelogram, world units.
+struct Footprint {
+  Vec3f x{}, y{};
+};
+
+/// Factors on light as it enters a surface and as it leaves.
+struct SurfaceTint {
+  RgbF entering{1, 1, 1}, leaving{1, 1, 1};
+};
+
+/// Factors on a textured medium's properties at a point, relative to their means; constant properties are 1.
+struct MediumFactors {
+  RgbF color{1, 1, 1}, radius{1, 1, 1};
+};
+
+class SurfaceTextures {
+ public:
+  /// Both must outlive the object.
+  /// error Error{bad_input}: UVs reach a missing tile of a texture, reported at the texture's position in the
+  ///       file
+  SurfaceTextures(const Scene& scene, const World& world);
+
+  /// True if no surface has other values at other points, a tint, or an anisotropic boundary.
+  bool empty() const { return is_empty_; }
+  /// True if it has a tint on transmission into the body.
+  bool tints_entering(std::uint32_t mesh) const;
+
+  /// One point of a mesh, with one footprint for all lookups.
+  struct Place {
+    std::uint32_t mesh;
+    std::optional<SurfaceUv> uv;  ///< none: not needed, or missing in the mesh
+    Footprint footprint;
+    Tangent tangent{};         ///< tangent of the mesh, world units; zero: missing
+    RgbF color{1, 1, 1};       ///< color of the mesh's vertices
+    bool from_behind = false;  ///< the normals are flipped: the back of a sheet is visible
+  };
+  Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
+
+  /// Factors on light entering and exiting at a point. An opaque surface's reflectance texture and vertex
+  /// colours apply on exit; a body's subsurface weight applies once.
+  SurfaceTint tint(const Place& place) const;
+  /// Fraction of the light diffusely reflected at the surface of a body, instead of entering.
+  RgbF reflected(const Place& place) const;
+  MediumFactors medium(const Place& place) const;
+  /// None: the surface's own.
+  std::optional<float> roughness(const Place& place) const;
+  std::optional<float> metalness(const Place& place) const;
+  /// Unit tangent perpendicular to the shading normal, the direction of largest roughness of an anisotropic
+  /// boundary; 0 for isotropic ones.
+  Vec3f tangent(const Place& place, const SurfacePoint& point) const;
+  /// Bends the point's shading normal by the normal map and then the bump map, if present.
+  void bend(const Place& place, SurfacePoint& point) const;
+
+ private:
+  struct OfMesh {
+    const Texture *tint = nullptr, *roughness = nullptr, *metalness = nullptr, *normals = nullptr,
+                  *heights = nullptr, *weight = nullptr, *base = nullptr, *color_inside = nullptr,
+                  *radius_inside = nullptr;
+    Rgb factor{1, 1, 1};               ///< times the tint's texture
+    double at_entry = 0, at_exit = 1;  ///< exponents of the tint
+    bool has_tint = false, has_uv = false, has_tangents = false, has_colors = false;
+    const Grain* grain = nullptr;
+    const Medium* partly_opaque = nullptr;
+  };
+
+  const World& world_;
+  std::vector<OfMesh> of_mesh_;
+  bool is_empty_ = true;
+};
+
+/// True if textures of a medium vary it inside the body (SubsurfaceMethod::follows_textures_inside).
+bool follows_textures_inside(Method method);  // methods.cpp
+
+/// True if vertex colours multiply the colour of the shape.
+bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh);
+
+/// Tint of transmitted light at the samples of a body: a power of the tint, averaged over each sample's cell;
+/// empty if no tint applies there.
+std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples);
+
+/// Adds a scene's texture to a key: its file's contents and mapping; with the UVs of some meshes.
+void add_to_key(KeyBuilder& key, const Texture& texture);
+/// A mesh's UVs and tangents.
+void add_coordinates(KeyBuilder& key, const Mesh& mesh);
+/// Cache key of a body's entering_tints; zero if there are none.
+StageKey tint_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes,
+                  const StageKey& samples);
+/// Cache key of the textures varying a medium inside bodies of these meshes; a key of zeros if there are
+/// none.
+StageKey medium_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes);
+
+/// Footprint of a cone on a surface.
+/// in    direction: of the ray, of any length; width: of the cone there
+Footprint footprint_of(const SurfacePoint& point, const Vec3f& direction, float width);
+
+}  // namespace opaline

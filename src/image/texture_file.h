@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Image files for texturing, with filtered lookups and linear colours.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "opaline/enumerations.h"
+#include "opaline/vec3.h"
+
+namespace opaline {
+
+/// Filter footprint: a position and the two sides of the parallelogram around it. u to the right, v downwards
+/// from the upper left corner, 1 the full image.
+struct TexturePlace {
+  float u = 0, v = 0;
+  std::array<float, 2> side_x{}, side_y{};
+};
+
+/// Memory for reading a whole texture, bytes.
+struct TextureMemory {
+  std::size_t decoded = 0;  ///< temporary, of the largest image
+  std::size_t cached = 0;   ///< all sizes; all textures together are limited by cache_limit
+};
+
+using Texel = std::array<double, 4>;  ///< red, green, blue, alpha; three equal for a grey image; no alpha: 1
+
+/// Use of a texture's texels. Colours become linear Rec.709, by the file's primaries, without premultiplied
+/// alpha. Data are the file's numbers.
+enum class TextureContent { data, colors };
+
+struct TextureEncoding {
+  ColorSpace space = ColorSpace::linear;  ///< not automatic
+  TextureContent content = TextureContent::data;
+
+  friend auto operator<=>(const TextureEncoding&, const TextureEncoding&) = default;
+};
+
+class CachedPicture;
+
+/// A repeated image, or several side by side: "<UDIM>" in a file's name represents 1001 + column + 10 x row,
+/// rows counted upwards. Texels are read on demand at the appropriate size, in a cache of limited size.
+class TextureFile {
+ public:
+  /// in    path: EXR, HDR, PNG, JPEG or TIFF, a name with "<UDIM>", or "asset.glb#image/3" by its index in
+  ///       the asset; space: not automatic
+  /// out   the same object while the file is unchanged and in use; the image is the display window, 0 outside
+  ///       the data window
+  /// error Error{bad_input} naming the file: missing, not a regular file, damaged, not an image, no colours
+  ///       or several layers of them, primaries not spanning a colour space
+  static std::shared_ptr<const TextureFile> open(const std::string& path, ColorSpace space,
+                                                 TextureContent content = TextureContent::data);
+  /// Colour space of a file without a declared one: linear for floats, otherwise sRGB.
+  /// error as open
+  static ColorSpace space_of_colors(const std::string& path);
+  ~TextureFile();
+
+  /// Filtered mean. Thread-safe.
+  /// error Error{bad_input} naming the file: damaged there
+  std::array<float, 4> at(const TexturePlace& place) const;
+  /// Derivatives of a channel of at() along the full image, to the right and down; smooth between texels.
+  /// Thread-safe.
+  std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const;
+  /// Value of all texels, if it is constant.
+  const std::optional<Texel>& constant() const { return constant_; }
+  /// Mean of all texels; reads the whole image the first time.
+  Texel mean() const;
+
+  const std::string& path() const { return path_; }
+  /// Ignored parts of the first file with such parts; empty: none.
+  const std::string& warning() const { return warning_; }
+  /// True if all its images have this channel of at(): 0 red to 3 alpha. A grey image has the first three.
+  bool has_channel(std::size_t channel) const { return has_channel_[channel]; }
+  TextureMemory memory() const;
+  /// Size limit of the cache shared by all textures, bytes.
+  static std::size_t cache_limit();
+  /// True if there is an image for this tile, v upwards; a plain image covers all tiles.
+  bool has_tile(int column, int row) const;
+  /// Hash of the file's bytes and its colour space.
+  std::uint64_t hash() const { return hash_; }
+
+ private:
+  TextureFile() = default;
+  /// Image at a position, which becomes relative to it; null: none.
+  const CachedPicture* picture_at(TexturePlace& place) const;
+  void add_picture(int tile, const std::string& path, TextureEncoding encoding);
+
+  std::string path_, warning_;
+  std::map<int, std::unique_ptr<const CachedPicture>> pictures_;  // by tile; 0 for a plain image
+  std::optional<Texel> constant_;
+  std::array<bool, 4> has_channel_{true, true, true, true};
+  std::uint64_t hash_ = 0;
+};
+
+}  // namespace opaline

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of the table of keys (input/schema.h), by the files defining them.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "input/schema.h"
+
+namespace opaline {
+
+inline KeyInfo row(std::string_view section, std::string_view key, ValueType type, std::string_view unit,
+                   const Range& range, std::string default_value, std::string_view meaning,
+                   std::span<const std::string_view> choices = {}) {
+  return {section, key, type, unit, range, std::move(default_value), meaning, choices};
+}
+
+inline KeyInfo textured(KeyInfo info) {
+  info.may_be_texture = true;
+  return info;
+}
+
+inline constexpr const char
+    *kAnisotropyMeaning =
+        "anisotropy of `specular_roughness`, as in OpenPBR: towards 1, highlights stretch along u, as on "
+        "metal brushed across u",
+    *kRotationMeaning =
+        "rotates u for `specular_anisotropy`, counter-clockwise; without UVs, u is horizontal, around y";
+
+/// The section "medium".
+std::vector<KeyInfo> medium_rows();
+
+}  // namespace opaline

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/load_scene.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <vector>
+
+#include "assets/import_asset.h"
+#include "core/input_file.h"
+#include "image/texture_file.h"
+#include "input/deprecated_spellings.h"
+#include "input/edited_text.h"
+#include "input/keyed_values.h"
+#include "input/overrides.h"
+#include "input/readers.h"
+#include "lights/environment_picture.h"
+#include "scene/scene_properties.h"
+#include "scene/unread_format.h"
+#include "values/nearest_name.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t largest_file = std::size_t{64} << 20;  // bytes
+
+std::string read_text(const std::string& path) {
+  const InputFile file(path, "scene file", did_you_mean_file);
+  if (file.size() > largest_file) throw bad_file(path, "too large for a scene file", "at most 64 MiB");
+  return file.read_all();
+}
+
+/// Rejects images, and unsupported formats.
+void check_is_no_other_file(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  for (const char* picture : {".png", ".exr", ".hdr", ".jpg", ".jpeg", ".tif"})
+    if (extension == picture)
+      throw bad_file(path, "is an image, not a scene",
+                     "a scene file (JSON), or an asset: .glb, .gltf, .obj, .ply, .stl or .off");
+  if (const std::string unread = unread_format(path); !unread.empty()) throw bad_file(path, unread);
+}
+
+/// Assets are recognised by their extension.
+void check_begins_as_scene(const std::string& path, const std::string& text) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    throw bad_file(path, "is UTF-16", "a scene file in UTF-8");
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (first == std::string::npos || text[first] == '{' || text[first] == '/') return;
+  throw bad_file(path, "is not a scene file",
+                 "JSON that begins with '{', or an asset with a name that ends in .glb, .gltf, .obj, .ply, "
+                 ".stl or .off");
+}
+
+/// Reads the elements of a list, and rejects a name used twice.
+template <class T, class Read>
+std::vector<T> read_named(const std::optional<Value>& list, const std::string& default_name, Read read) {
+  std::vector<T> records;
+  std::set<std::string> names;
+  if (!list) return records;
+  for (const Value& value : list->list()) {
+    records.push_back(read(value, default_name + std::to_string(records.size())));
+    const std::string& name = records.back().name;
+    if (names.insert(name).second) continue;
+    if (const std::optional<Value> own = value.member("name", value.info()))
+      own->fail("is already in use", "a unique name");
+    value.fail("has a default name that is already in use: '" + printable(name) + "'");
+  }
+  return records;
+}
+
+/// Splits coloured environment maps into a light per channel, as irradiance is one number per light.
+std::vector<Light> by_channel(const std::vector<Light>& lights) {
+  std::vector<Light> split;
+  for (const Light& light : lights) {
+    const auto* environment = std::get_if<EnvironmentLight>(&light.source);
+    if (environment == nullptr || environment->picture->is_grey()) {
+      split.push_back(light);
+      continue;
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      EnvironmentLight channel = *environment;
+      channel.channel = c;
+      split.push_back({light.name, channel, light.place, light.is_seen});
+    }
+  }
+  return split;
+}
+
+void read_surroundings(const Value& value, std::vector<Light>& lights) {
+  const Rgb radiance = value.color();
+  if (radiance != Rgb{}) lights.push_back({"surroundings", Surroundings{radiance}, value.place()});
+}
+
+/// Distributes triangles over spheres. A few have the maximum, limited by the precision of float vertices.
+/// More have a quarter each, with 0.02 % less area; hundreds share the memory of one hundred.
+void share_triangles(std::vector<Shape>& shapes) {
+  constexpr double kMostTriangles = 8e6, kFinestTriangles = 81920, kFewBalls = 6;
+  const auto for_each_curved = [&](const auto& use) {
+    for (Shape& shape : shapes) {
+      if (auto* sphere = std::get_if<SphereShape>(&shape.source)) use(sphere->fineness);
+      if (auto* torus = std::get_if<TorusShape>(&shape.source)) use(torus->fineness);
+    }
+  };
+  double balls = 0;
+  for_each_curved([&](int&) { ++balls; });
+  double triangles = balls * kFinestTriangles;
+  int fineness = kMostFineness;
+  if (balls > kFewBalls) {
+    --fineness;
+    triangles /= 4;
+  }
+  for (; fineness > kLeastFineness && triangles > kMostTriangles; triangles /= 4) --fineness;
+  for_each_curved([&](int& of_shape) { of_shape = fineness; });
+}
+
+/// A multipole medium without a thickness has that of the built-in plates made of it.
+/// error if they differ
+void take_thickness_of_plates(Scene& scene) {
+  std::vector<bool> is_declared;
+  for (const Medium& medium : scene.media) is_declared.push_back(std::isfinite(medium.thickness));
+  for (const Shape& shape : scene.shapes) {
+    const auto* plate = std::get_if<SlabShape>(&shape.source);
+    if (plate == nullptr || !shape.medium || is_declared[*shape.medium]) continue;
+    Medium& medium = scene.media[*shape.medium];
+    if (medium.profile != ProfileKind::multipole) continue;
+    const double thickness = plate->thickness * length(shape.to_world.y);
+    if (std::isfinite(medium.thickness) && std::abs(thickness / medium.thickness - 1) > 1e-6)
+      throw Error(ErrorKind::bad_input, shape.place.file, shape.place.line, shape.place.column,
+                  fmt::format("{}: plates of the multipole medium {} have different thicknesses", shape.name,
+                              medium.name),
+                  "one medium per thickness, or medium.thickness",
+                  fmt::format("{:g} and {:g} mm", medium.thickness, thickness));
+    medium.thickness = thickness;
+  }
+}
+
+Document merged_document(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides, int frame) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    throw bad_file(file, "the scene file is empty", "a JSON object {...}");
+  Document document{file, text, {overrides.begin(), overrides.end()}, {}, frame, line_starts_of(text)};
+  document.root = parse_tree(document, text);
+  if (document.root.kind != Node::Kind::object) return document;
+  replace_deprecated_spellings(document);
+  apply_overrides(document);
+  return document;
+}
+
+Scene read_scene(const Document& document) {
+  static const KeyInfo root{"", "scene"};
+  const ObjectReader reader(Value(document, document.root, "", root), "scene");
+  Scene scene;
+  scene.file = document.file;
+  const auto unit = reader.find("mm_per_unit");
+  const double mm_per_unit = scene.mm_per_unit = unit ? unit->number() : 1;
+  if (const auto media = reader.find("media"))
+    for (const Value& medium : media->members()) scene.media.push_back(read_medium(medium, mm_per_unit));
+  ShapeContext context{mm_per_unit, &scene.media, {}};
+  scene.shapes = read_named<Shape>(
+      reader.find("shapes"), "shape",
+      [&](const Value& value, const std::string& name) { return read_shape(value, name, context); });
+  share_triangles(scene.shapes);
+  take_thickness_of_plates(scene);
+  scene.lights = by_channel(read_named<Light>(
+      reader.find("lights"), "light",
+      [&](const Value& value, const std::string& name) { return read_light(value, name, mm_per_unit); }));
+  if (const auto surroundings = reader.find("surroundings")) read_surroundings(*surroundings, scene.lights);
+  scene.camera = read_camera(reader.find("camera"), mm_per_unit);
+  if (const auto film = reader.find("film")) scene.film = read_film(*film);
+  if (const auto settings = reader.find("settings")) scene.settings = read_settings(*settings, mm_per_unit);
+  return scene;
+}
+
+/// Each file once.
+std::vector<std::string> texture_warnings(const Scene& scene) {
+  std::set<std::string> warnings;
+  for (const Shape& shape : scene.shapes)
+    for (const Texture* texture : textures_of(scene, shape)) warnings.insert(texture->file->warning());
+  warnings.erase("");
+  return {warnings.begin(), warnings.end()};
+}
+
+/// Removes line numbers of a generated text, unknown to the user.
+void forget_places(Scene& scene) {
+  const auto forget = [&](auto& records) {
+    for (auto& record : records)
+      if (record.place.file == scene.file) record.place = {};
+  };
+  forget(scene.media);
+  forget(scene.shapes);
+  forget(scene.lights);
+}
+
+/// error without line and column, as the text is generated
+Scene parse_asset(const std::string& text, const std::string& path, std::span<const std::string> overrides,
+                  int frame) {
+  try {
+    return parse_scene(text, path, overrides, frame);
+  } catch (const Error& failure) {
+    if (failure.file != path) throw;
+    throw Error(failure.kind, path, 0, 0, failure.message, failure.expected, failure.got);
+  }
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
+  if (!is_asset_name(path)) return parse_scene(read_scene_text(path), path, overrides, frame);
+  const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
+  Scene scene = parse_asset(asset.text, path, overrides, frame);
+  scene.translation = asset.summary;
+  scene.warnings.insert(scene.warnings.begin(), asset.warnings.begin(), asset.warnings.end());
+  scene.asset_bytes = asset.bytes;
+  if (!asset.not_carried.empty()) scene.translation += "; opaline import lists all";
+  forget_places(scene);
+  return scene;
+}
+
+std::string read_scene_text(const std::string& path) {
+  if (is_asset_name(path)) return import_asset(path, std::filesystem::path(path).filename().string()).text;
+  check_is_no_other_file(path);
+  std::string text = read_text(path);
+  check_begins_as_scene(path, text);
+  return text;
+}
+
+Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides,
+                  int frame) {
+  Document document = merged_document(text, file, overrides, frame);
+  std::size_t camera_frames = 1;
+  if (document.root.kind == Node::Kind::object) {
+    camera_frames = count_camera_frames(document);
+    resolve_keyed_values(document);
+  }
+  Scene scene = read_scene(document);
+  scene.camera_frames = camera_frames;
+  scene.warnings = document.warnings;
+  for (std::string& warning : texture_warnings(scene)) scene.warnings.push_back(std::move(warning));
+  return scene;
+}
+
+std::string merged_scene(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides, std::optional<int> frame) {
+  Document document = merged_document(text, file, overrides, frame.value_or(1));
+  if (frame && document.root.kind == Node::Kind::object) resolve_keyed_values(document);
+  return to_json(document.root) + '\n';
+}
+
+std::string edited_scene(std::string_view text, const std::string& file,
+                         std::span<const std::string> overrides) {
+  const Document before = merged_document(text, file, {}, 1), now = merged_document(text, file, overrides, 1);
+  return edited_text(text, before.root, now.root);
+}
+
+Medium parse_medium(std::string_view text, const std::string& file) {
+  Document document{file, text, {}, {}, 1, line_starts_of(text)};
+  document.root = parse_tree(document, text);
+  replace_deprecated_spellings(document, document.root, "");
+  document.root.key = "medium";
+  return read_medium(Value(document, document.root, document.root.key, key_info("scene", "media")), 1);
+}
+
+}  // namespace opaline

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/overrides.h"
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "input/deprecated_spellings.h"
+#include "input/schema.h"
+#include "values/nearest_name.h"
+
+namespace opaline {
+namespace {
+
+/// Name of a list's element: its own, or the default one ("shape0" in "shapes").
+std::string element_name(const Node& list, std::size_t i) {
+  const Node* name = find_member(list.children[i], "name");
+  if (name != nullptr && name->kind == Node::Kind::string) return name->text;
+  return list.key.substr(0, list.key.size() - list.key.ends_with('s')) + std::to_string(i);
+}
+
+/// ".5" and "-.5" with a leading zero, as in JSON; empty for anything else.
+std::string with_leading_zero(std::string_view value) {
+  if (value.starts_with('.')) return '0' + std::string(value);
+  if (value.starts_with("-.")) return "-0" + std::string(value.substr(1));
+  return {};
+}
+
+/// The same for all numbers in a list or object; empty: nothing changes.
+std::string with_leading_zeros(std::string_view value) {
+  const auto is_digit = [&](std::size_t i) { return i < value.size() && value[i] >= '0' && value[i] <= '9'; };
+  std::string text;
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (value[i] == '"' && (i == 0 || value[i - 1] != '\\')) is_quoted = !is_quoted;
+    if (!is_quoted && value[i] == '.' && is_digit(i + 1) && (i == 0 || !is_digit(i - 1))) text += '0';
+    text += value[i];
+  }
+  return text.size() > value.size() ? text : std::string();
+}
+
+/// True for an intended list or object, valid or not.
+bool is_bracketed(std::string_view value) {
+  return (value.starts_with('[') && value.ends_with(']')) || (value.starts_with('{') && value.ends_with('}'));
+}
+
+bool is_json(std::string_view value) {
+  return nlohmann::json::accept(value.begin(), value.end(), /*ignore_comments=*/true);
+}
+
+/// The next name of a path.
+struct PathName {
+  std::string_view name;
+  std::size_t end = 0;  ///< end of it in the path, with its quotes
+};
+
+class Override {
+ public:
+  Override(Document& document, int index)
+      : document_(document), index_(index), text_(document.overrides[static_cast<std::size_t>(index)]) {}
+
+  void apply() {
+    const std::size_t equals = end_of_path();
+    if (equals == std::string_view::npos || equals == 0) fail("no value given", "path.to.key=value");
+    const std::string_view path = text_.substr(0, equals);
+    if (std::ranges::count(path, '.') >= max_depth)
+      fail("the path is nested too deeply", "at most " + std::to_string(max_depth) + " levels");
+    Node* node = &document_.root;
+    for (std::size_t begin = 0; begin <= path.size();) {
+      const auto [name, end] = next_name(path, begin, *node);
+      if (name.empty()) fail("an empty name in the path", "path.to.key=value");
+      node = &step(*node, name, path.substr(0, begin > 0 ? begin - 1 : 0));
+      begin = end + 1;
+    }
+    replace(*node, text_.substr(equals + 1));
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message, const std::string& expected = {}) const {
+    throw error_at(document_, 0, index_, message, expected);
+  }
+
+  /// The first equals sign outside of quotes.
+  std::size_t end_of_path() const {
+    char quote = 0;
+    for (std::size_t i = 0; i < text_.size(); ++i) {
+      if (quote != 0 ? text_[i] == quote
+                     : (text_[i] == '"' || text_[i] == '\'') && (i == 0 || text_[i - 1] == '.'))
+        quote = quote != 0 ? '\0' : text_[i];
+      else if (quote == 0 && text_[i] == '=')
+        return i;
+    }
+    return text_.find('=');
+  }
+
+  /// A name containing dots is one of the node's children, or quoted.
+  PathName next_name(std::string_view path, std::size_t begin, const Node& node) const {
+    const std::string_view rest = path.substr(begin);
+    if (rest.starts_with('"') || rest.starts_with('\'')) {
+      const std::size_t close = rest.find(rest[0], 1);
+      const bool is_closed = close != rest.npos && (close + 1 == rest.size() || rest[close + 1] == '.');
+      if (!is_closed)
+        fail("a quoted name in the path has no closing quote", "path.\"name.with.points\".key=value");
+      return {rest.substr(1, close - 1), begin + close + 1};
+    }
+    std::size_t length = std::min(rest.find('.'), rest.size());
+    for (std::size_t i = 0; i < node.children.size(); ++i) {
+      const bool is_list = node.kind == Node::Kind::array;
+      const std::string name = is_list ? element_name(node, i) : node.children[i].key;
+      const bool is_next = rest.starts_with(name) && (name.size() == rest.size() || rest[name.size()] == '.');
+      if (is_next && name.size() > length) length = name.size();
+    }
+    return {rest.substr(0, length), begin + length};
+  }
+
+  /// Child of `parent` at this step of the path, created if missing.
+  Node& step(Node& parent, std::string_view name, std::string_view so_far) const {
+    if (name == "texture" && is_plain_value(parent)) make_object(parent);
+    if (parent.kind == Node::Kind::array) return element(parent, name, so_far);
+    if (parent.kind != Node::Kind::object)
+      fail("'" + printable(so_far) + "' is a single value, there is no '" + printable(name) + "' in it",
+           "--set " + printable(so_far) + "=VALUE");
+    for (Node& child : parent.children)
+      if (child.key == name) return child;
+    Node& child = parent.children.emplace_back();
+    child.kind = Node::Kind::object;
+    child.key = name;
+    child.override_index = index_;
+    return child;
+  }
+
+  /// True for a colour or a number, replaceable by a texture.
+  static bool is_plain_value(const Node& node) {
+    const auto is_number = [](const Node& n) { return n.kind == Node::Kind::number; };
+    const bool is_triple = node.kind == Node::Kind::array && std::ranges::all_of(node.children, is_number);
+    return is_triple || is_number(node) || (node.kind == Node::Kind::string && node.text.starts_with('#'));
+  }
+
+  void make_object(Node& node) const {
+    Node object;
+    object.kind = Node::Kind::object;
+    object.key = std::move(node.key);
+    object.override_index = index_;
+    node = std::move(object);
+  }
+
+  Node& element(Node& list, std::string_view name, std::string_view so_far) const {
+    std::size_t i = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), i);
+    if (error == std::errc{} && end == name.data() + name.size() && i < list.children.size())
+      return list.children[i];
+    std::vector<std::string> names;
+    for (i = 0; i < list.children.size(); ++i) {
+      names.push_back(element_name(list, i));
+      if (names.back() == name) return list.children[i];
+    }
+    if (so_far == "shapes" || so_far == "lights") fail_name(name, so_far.substr(0, so_far.size() - 1), names);
+    fail("no element '" + printable(name) + "' in '" + printable(so_far) + "'",
+         names.empty() ? "none: it is empty" : "an index below " + std::to_string(names.size()));
+  }
+
+  /// No shape or light has this name.
+  [[noreturn]] void fail_name(std::string_view name, std::string_view kind,
+                              const std::vector<std::string>& names) const {
+    constexpr std::size_t most = 8;
+    std::vector<std::string_view> views(names.begin(), names.end());
+    const std::string hint = did_you_mean(name, views);
+    views.resize(std::min(views.size(), most));
+    const std::string more =
+        names.size() > most ? " and " + std::to_string(names.size() - most) + " more" : "";
+    fail("no " + std::string(kind) + " '" + printable(name) + '\'' + hint +
+         (names.empty() ? "; there is none" : "; there is: " + printable(join(views)) + more));
+  }
+
+  void replace(Node& node, std::string_view value) const {
+    Node fresh;
+    const std::string zeroed = is_bracketed(value) ? with_leading_zeros(value) : with_leading_zero(value);
+    if (is_json(zeroed)) {
+      fresh = parse_tree(document_, zeroed, index_);
+    } else if (is_json(value) || is_bracketed(value)) {
+      fresh = parse_tree(document_, value, index_);
+    } else {
+      fresh.kind = Node::Kind::string;
+      fresh.text = value;
+      fresh.override_index = index_;
+    }
+    fresh.key = std::move(node.key);
+    node = std::move(fresh);
+  }
+
+  Document& document_;
+  int index_;
+  std::string_view text_;
+};
+
+std::set<std::string> media_names(const Node& scene) {
+  std::set<std::string> names;
+  if (const Node* media = find_member(scene, "media"))
+    for (const Node& medium : media->children) names.insert(medium.key);
+  return names;
+}
+
+bool has_shape_of(const Node& scene, std::string_view medium) {
+  const Node* shapes = find_member(scene, "shapes");
+  return shapes != nullptr &&
+         std::any_of(shapes->children.begin(), shapes->children.end(), [&](const Node& s) {
+           const Node* name = find_member(s, "medium");
+           return name != nullptr && name->text == medium;
+         });
+}
+
+/// Rejects a new medium used by no shape, with a name similar to an existing one: a likely misspelling.
+void check_new_media(const Document& document, const std::set<std::string>& names) {
+  const Node* media = find_member(document.root, "media");
+  if (media == nullptr || media->override_index >= 0) return;  // the whole list is from the command line
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  for (const Node& medium : media->children) {
+    if (medium.override_index < 0 || names.contains(medium.key)) continue;
+    const std::string hint = did_you_mean(medium.key, views);
+    if (hint.empty() || has_shape_of(document.root, medium.key)) continue;
+    throw error_at(document, 0, medium.override_index, "no '" + printable(medium.key) + "' in 'media'" + hint,
+                   "a medium of the file, or a new one used by a shape");
+  }
+}
+
+/// Removes the opaque surface of a shape made translucent on the command line, and vice versa.
+void drop_replaced_surface(Node& shape) {
+  const auto is_given = [&](std::string_view key) {
+    const Node* member = find_member(shape, key);
+    return member != nullptr && member->override_index >= 0;
+  };
+  const auto drop = [&](std::string_view key) {
+    std::erase_if(shape.children, [&](const Node& c) { return c.override_index < 0 && c.key == key; });
+  };
+  if (is_given("medium"))
+    for (const char* key : {"reflectance", "metalness", "specular_roughness", "specular_ior",
+                            "specular_weight", "specular_anisotropy", "specular_rotation"})
+      drop(key);
+  else if (is_given("reflectance"))
+    for (const char* key : {"medium", "group"}) drop(key);
+}
+
+}  // namespace
+
+void apply_overrides(Document& document) {
+  const std::set<std::string> names = media_names(document.root);
+  for (std::size_t i = 0; i < document.overrides.size(); ++i) {
+    Override(document, static_cast<int>(i)).apply();
+    replace_deprecated_spellings(document);
+  }
+  check_new_media(document, names);
+  for (Node& member : document.root.children)
+    if (member.key == "shapes") std::ranges::for_each(member.children, drop_replaced_surface);
+}
+
+}  // namespace opaline

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "image/texture_file.h"
+#include "input/presets.h"
+#include "input/readers.h"
+
+namespace opaline {
+namespace {
+
+/// One way to define a medium: its decisive key, and the accompanying keys.
+struct Form {
+  std::string_view decisive;
+  std::vector<std::string_view> companions;
+};
+
+const std::vector<Form>& forms() {
+  static const std::vector<Form> table{
+      {"preset", {"scatter_anisotropy"}},
+      {"sigma_s_prime", {"sigma_a", "scatter_anisotropy"}},
+      {"sigma_s", {"sigma_a", "g"}},
+      {"subsurface_color", {"subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy"}},
+  };
+  return table;
+}
+
+/// Decisive key of the medium's form. error if there is none, several, or a key of another form beside it
+std::string_view form_of(const ObjectReader& medium) {
+  const std::string ways =
+      "preset, sigma_a + sigma_s_prime, sigma_a + sigma_s (+ g), or subsurface_color + subsurface_radius";
+  const Form* form = nullptr;
+  for (const Node& member : medium.node().children)
+    for (const Form& f : forms()) {
+      if (member.key != f.decisive) continue;
+      if (form != nullptr)
+        medium.need(member.key)
+            .fail_key("cannot be combined with '" + std::string(form->decisive) + "'", ways);
+      form = &f;
+    }
+  if (form == nullptr) medium.fail("does not define the medium", ways);
+  for (const Form& other : forms())
+    for (const std::string_view key : other.companions)
+      if (std::find(form->companions.begin(), form->companions.end(), key) == form->companions.end())
+        if (const std::optional<Value> value = medium.find(key))
+          value->fail_key("has no effect with '" + std::string(form->decisive) + "'", ways);
+  return form->decisive;
+}
+
+const Preset& preset_of(const Value& value) {
+  return presets()[value.choice()];
+}
+
+PhysicalMedium read_physical(const ObjectReader& medium) {
+  PhysicalMedium result;
+  result.sigma_a = medium.need("sigma_a").number_or_triple();
+  if (const auto sigma_s_prime = medium.find("sigma_s_prime")) {
+    result.sigma_s_prime = sigma_s_prime->number_or_triple();
+    return result;
+  }
+  const auto g = medium.find("g");
+  result.sigma_s_prime = medium.need("sigma_s").number_or_triple() * (1 - (g ? g->number() : 0));
+  return result;
+}
+
+/// Returns the texture's mean and normalises its texels by it.
+Rgb take_mean(Texture& texture) {
+  const Texel mean = texture.file->mean();
+  Rgb taken;
+  for (std::size_t c = 0; c < 3; ++c) {
+    taken[c] = std::max(0., mean[c]) * texture.scale[c];
+    texture.scale[c] = mean[c] > 0 ? 1 / mean[c] : 1;
+  }
+  texture.is_relative = true;
+  return taken;
+}
+
+/// Uses the mean colour of a texture for the medium, and the relative texels as a tint.
+void take_color(const Value& value, ArtistMedium& coefficients, Medium& medium) {
+  ColorReading color = read_color(value);
+  coefficients.subsurface_color = color.color;
+  if (!color.texture) return;
+  const Rgb mean = take_mean(*color.texture);
+  for (std::size_t c = 0; c < 3; ++c) coefficients.subsurface_color[c] = std::min(mean[c], 1.0);
+  medium.tint_texture = std::move(color.texture);
+}
+
+void take_radius(const Value& value, ArtistMedium& coefficients, Medium& medium) {
+  TripleReading radius = read_triple(value);
+  coefficients.subsurface_radius = radius.texture ? take_mean(*radius.texture) : radius.triple;
+  medium.radius_texture = std::move(radius.texture);
+}
+
+ArtistMedium read_artist(const ObjectReader& medium, Medium& owner) {
+  ArtistMedium result;
+  take_color(medium.need("subsurface_color"), result, owner);
+  take_radius(medium.need("subsurface_radius"), result, owner);
+  if (const auto scale = medium.find("subsurface_radius_scale"))
+    result.subsurface_radius = result.subsurface_radius * scale->number_or_triple();
+  if (const auto g = medium.find("subsurface_scatter_anisotropy")) result.anisotropy = g->number();
+  return result;
+}
+
+void read_tint(const ObjectReader& reader, Medium& medium) {
+  if (const auto mix = reader.find("texture_mix"))
+    medium.texture_mix = static_cast<TextureMix>(mix->choice());
+  const auto value = reader.find("tint");
+  if (!value) return;
+  if (medium.texture_mix == TextureMix::medium)
+    reader.need("texture_mix").fail("applies to 'subsurface_color' only", "another value with 'tint'");
+  if (medium.tint_texture)
+    value->fail_key("cannot be combined with a texture of 'subsurface_color'", "one of the two");
+  ColorReading tint = read_color(*value);
+  medium.tint = tint.color;
+  medium.tint_texture = std::move(tint.texture);
+}
+
+void read_weight(const ObjectReader& reader, Medium& medium) {
+  const auto weight = reader.find("subsurface_weight"), base = reader.find("base_color");
+  if (base && !weight)
+    base->fail_key("has no effect without a 'subsurface_weight' below 1", "'subsurface_weight' with it");
+  if (weight) {
+    NumberReading reading = read_number(*weight);
+    medium.subsurface_weight = reading.number;
+    medium.weight_texture = std::move(reading.texture);
+  }
+  if (base) {
+    ColorReading reading = read_color(*base);
+    medium.base_color = reading.color;
+    medium.base_texture = std::move(reading.texture);
+  }
+}
+
+}  // namespace
+
+double weighted_ior(double ior, double weight) {
+  if (weight == 1) return ior;
+  const double amplitude = (ior - 1) / (ior + 1) * std::sqrt(weight);
+  return (1 + amplitude) / (1 - amplitude);
+}
+
+Grain read_grain(const ObjectReader& reader) {
+  Grain grain;
+  if (const auto anisotropy = reader.find("specular_anisotropy")) grain.anisotropy = anisotropy->number();
+  if (const auto rotation = reader.find("specular_rotation")) grain.rotation = rotation->number();
+  return grain;
+}
+
+Medium read_medium(const Value& value, double mm_per_unit) {
+  const ObjectReader reader(value, "medium");
+  Medium medium;
+  medium.name = value.node().key;
+  medium.place = value.place();
+  if (medium.name.empty()) value.fail_key("has no name", "a nonempty name");
+  const std::string_view form = form_of(reader);
+  if (form == "preset") {
+    const Value name = reader.need("preset");
+    const Preset& preset = preset_of(name);
+    medium.coefficients = preset.coefficients;
+    medium.eta = preset.eta;
+  } else if (form == "subsurface_color") {
+    medium.coefficients = read_artist(reader, medium);
+  } else {
+    medium.coefficients = read_physical(reader);
+  }
+  if (const auto g = reader.find(form == "sigma_s" ? "g" : "scatter_anisotropy"))
+    medium.scatter_anisotropy = g->number();
+  if (const auto ior = reader.find("specular_ior")) medium.eta = ior->number();
+  if (const auto weight = reader.find("specular_weight"))
+    medium.eta = weighted_ior(medium.eta, weight->number());
+  if (const auto rough = reader.find("specular_roughness")) {
+    NumberReading roughness = read_number(*rough);
+    medium.specular_roughness = roughness.number;
+    medium.roughness_texture = std::move(roughness.texture);
+  }
+  medium.grain = read_grain(reader);
+  read_tint(reader, medium);
+  read_weight(reader, medium);
+  const auto profile = reader.find("profile");
+  const std::size_t choice = profile ? profile->choice() : 0;
+  medium.profile.reset();
+  if (choice > 0) medium.profile = static_cast<ProfileKind>(choice - 1);
+  const auto thickness = reader.find("thickness");
+  if (thickness) medium.thickness = thickness->length(mm_per_unit);
+  if (thickness && choice == 0) medium.profile = ProfileKind::multipole;
+  if (const auto fit = reader.find("fit")) {
+    medium.fit = NormalizedDiffusionFit(fit->choice());
+    if (thickness && choice == 0)
+      fit->fail_key("cannot be combined with 'thickness'", "a 'profile' with them");
+    if (choice == 0) medium.profile = ProfileKind::normalized_diffusion;
+  }
+  return medium;
+}
+
+}  // namespace opaline

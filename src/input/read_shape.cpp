@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "input/presets.h"
+#include "input/readers.h"
+#include "values/nearest_name.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::array<std::string_view, 6> source_names{"file", "sphere", "box", "quad", "slab", "torus"};
+
+MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) {
+  MeshFile mesh;
+  mesh.path = shape.need("file").file_path();
+  if (const auto part = shape.find("part")) mesh.part = part->string();
+  if (const auto fill_holes = shape.find("fill_holes")) mesh.fill_holes = fill_holes->flag();
+  if (const auto fit_size = shape.find("fit_size")) mesh.fit_size = fit_size->length(context.mm_per_unit);
+  if (const auto colors = shape.find("vertex_colors")) mesh.vertex_colors = colors->flag();
+  if (const auto crease = shape.find("crease_angle")) mesh.crease_angle = crease->number();
+  return mesh;
+}
+
+Vec3d read_center(const ObjectReader& reader, double mm_per_unit) {
+  const auto center = reader.find("center");
+  return center ? center->point(mm_per_unit) : Vec3d{};
+}
+
+SphereShape read_sphere(const ObjectReader& reader, double mm_per_unit) {
+  return {read_center(reader, mm_per_unit), reader.need("radius").length(mm_per_unit)};
+}
+
+BoxShape read_box(const ObjectReader& reader, double mm_per_unit) {
+  const Value high_value = reader.need("high");
+  const Vec3d low = reader.need("low").point(mm_per_unit), high = high_value.point(mm_per_unit);
+  if (min_component(high - low) <= 0) high_value.fail("is not beyond 'low'", "more than 'low' in x, y and z");
+  return {low, high};
+}
+
+QuadShape read_quad(const ObjectReader& reader, double mm_per_unit) {
+  const Value v_value = reader.need("v");
+  const Vec3d u = reader.need("u").point(mm_per_unit), v = v_value.point(mm_per_unit);
+  check_parallelogram(u, v, v_value);
+  return {reader.need("corner").point(mm_per_unit), u, v};
+}
+
+SlabShape read_slab(const ObjectReader& reader, double mm_per_unit) {
+  return {read_center(reader, mm_per_unit), reader.need("width").length(mm_per_unit),
+          reader.need("depth").length(mm_per_unit), reader.need("thickness").length(mm_per_unit)};
+}
+
+TorusShape read_torus(const ObjectReader& reader, double mm_per_unit) {
+  const Value minor_value = reader.need("minor_radius");
+  const double major = reader.need("major_radius").length(mm_per_unit),
+               minor = minor_value.length(mm_per_unit);
+  if (minor >= major) minor_value.fail("leaves no hole in the torus", "less than 'major_radius'");
+  return {read_center(reader, mm_per_unit), major, minor};
+}
+
+/// place: set to the source's position in the file.
+ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, SourcePlace& place) {
+  const std::string_view kind = shape.exactly_one_of(source_names);
+  place = shape.need(kind).place();
+  if (kind == "file") return read_mesh_file(shape, context);
+  for (const std::string_view option : {"part", "fill_holes", "fit_size", "vertex_colors", "crease_angle"})
+    if (const auto value = shape.find(option)) value->fail_key("has no effect without 'file'");
+  const ObjectReader source(shape.need(kind), "shape." + std::string(kind));
+  const double mm_per_unit = context.mm_per_unit;
+  if (kind == "sphere") return read_sphere(source, mm_per_unit);
+  if (kind == "box") return read_box(source, mm_per_unit);
+  if (kind == "quad") return read_quad(source, mm_per_unit);
+  if (kind == "slab") return read_slab(source, mm_per_unit);
+  return read_torus(source, mm_per_unit);
+}
+
+std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
+  const std::string name = value.string();
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < media.size(); ++i) {
+    if (media[i].name == name) return i;
+    names.push_back(media[i].name);
+  }
+  const bool is_preset = std::ranges::any_of(presets(), [&](const Preset& p) { return p.name == name; });
+  if (is_preset && value.node().override_index >= 0)
+    value.fail("is not a medium of this scene: there is no '" + name + "' yet; add --set media." + name +
+               ".preset=" + name);
+  if (is_preset)
+    value.fail("is not a medium of this scene: '" + name + "' is a preset: write \"media\": {\"" + name +
+               "\": {\"preset\": \"" + name + "\"}}");
+  value.fail("is not a medium of this scene" + did_you_mean(name, names),
+             names.empty() ? "a name from 'media', which is empty" : "one of " + printable(join(names)));
+}
+
+void read_gloss(const ObjectReader& reader, Shape& shape) {
+  const auto metalness = reader.find("metalness"), roughness = reader.find("specular_roughness"),
+             ior = reader.find("specular_ior"), weight = reader.find("specular_weight");
+  const auto anisotropy = reader.find("specular_anisotropy"), rotation = reader.find("specular_rotation");
+  for (const auto& key : {metalness, roughness, ior, weight, anisotropy, rotation})
+    if (key && shape.medium) key->fail_key("belongs to the medium", "the key in 'media', or an opaque shape");
+  for (const auto& key : {ior, weight, anisotropy, rotation})
+    if (key && !metalness && !roughness)
+      key->fail_key("has no effect on a diffuse shape", "'specular_roughness' with it");
+  if (!metalness && !roughness) return;
+  Gloss& gloss = shape.gloss.emplace();
+  if (metalness) {
+    NumberReading reading = read_number(*metalness);
+    gloss.metalness = reading.number;
+    gloss.metalness_texture = std::move(reading.texture);
+  }
+  if (roughness) {
+    NumberReading reading = read_number(*roughness);
+    gloss.roughness = reading.number;
+    gloss.roughness_texture = std::move(reading.texture);
+  }
+  gloss.grain = read_grain(reader);
+  if (ior) gloss.eta = ior->number();
+  constexpr double kTrace = 1e-4;  // minimum weight of the dielectric, so metals keep a boundary
+  if (weight) gloss.eta = weighted_ior(gloss.eta, std::max(weight->number(), kTrace));
+}
+
+void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shape) {
+  const auto medium = reader.find("medium"), reflectance = reader.find("reflectance");
+  const auto group = reader.find("group");
+  if (medium && reflectance)
+    reflectance->fail_key("cannot be combined with 'medium'", "either a translucent or an opaque shape");
+  if (medium) shape.medium = find_medium(*medium, *context.media);
+  if (reflectance) {
+    ColorReading color = read_color(*reflectance);
+    shape.reflectance = color.color;
+    shape.has_reflectance = true;
+    shape.reflectance_texture = std::move(color.texture);
+  }
+  if (const auto map = reader.find("normal_map")) shape.normal_map = read_normal_map(*map);
+  if (const auto map = reader.find("bump_map")) shape.bump_map = read_bump_map(*map, context.mm_per_unit);
+  read_gloss(reader, shape);
+  if (!group) return;
+  shape.group = group->string();
+  if (!medium) group->fail_key("has no effect without 'medium'");
+  const auto [first, is_new] = context.group_media.try_emplace(shape.group, *shape.medium);
+  if (!is_new && first->second != *shape.medium)
+    group->fail("contains two media", "the medium of the first shape of the group, '" +
+                                          printable((*context.media)[first->second].name) + "'");
+}
+
+}  // namespace
+
+void check_parallelogram(const Vec3d& u, const Vec3d& v, const Value& v_value) {
+  // Normalised first: the product of very long or short vectors would over- or underflow.
+  if (length(cross(normalized(u), normalized(v))) < 1e-9)
+    v_value.fail("spans no area", "not parallel to 'u'");
+}
+
+Shape read_shape(const Value& value, const std::string& name, ShapeContext& context) {
+  const ObjectReader reader(value, "shape");
+  Shape shape;
+  const auto own_name = reader.find("name"), transform = reader.find("transform"),
+             normals = reader.find("normals");
+  shape.name = own_name ? own_name->string() : name;
+  shape.source = read_source(reader, context, shape.place);
+  if (transform) shape.to_world = read_transform(*transform, context.mm_per_unit);
+  // A mesh file without a size in mm is in scene units.
+  const auto* mesh = std::get_if<MeshFile>(&shape.source);
+  if (mesh != nullptr && !mesh->fit_size)
+    for (Vec3d* axis : {&shape.to_world.x, &shape.to_world.y, &shape.to_world.z})
+      *axis *= context.mm_per_unit;
+  if (normals) shape.normals = static_cast<NormalMode>(normals->choice());
+  read_surface(reader, context, shape);
+  return shape;
+}
+
+}  // namespace opaline

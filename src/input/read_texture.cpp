@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
+#include "image/texture_file.h"
+#include "input/readers.h"
+#include "opaline/error.h"
+
+namespace opaline {
+namespace {
+
+bool is_texture(const Value& value) {
+  return value.node().kind == Node::Kind::object;
+}
+
+/// Channels of a texel used by a value.
+enum class TexturePart { color, triple, number };
+
+std::array<double, 2> read_pair(const Value& value) {
+  const std::vector<Value> numbers = value.list(2, "a list of 2 numbers");
+  return {numbers[0].number(), numbers[1].number()};
+}
+
+ColorSpace space_of(const ObjectReader& reader, const std::string& path, TexturePart part) {
+  ColorSpace space = ColorSpace::automatic;
+  if (const auto declared = reader.find("color_space")) space = static_cast<ColorSpace>(declared->choice());
+  if (space != ColorSpace::automatic) return space;
+  return part == TexturePart::color ? TextureFile::space_of_colors(path) : ColorSpace::linear;
+}
+
+/// error unless the image has the channels; a missing alpha is 1
+void check_channels(const Value& file, const std::optional<Value>& channel, const Texture& texture,
+                    TexturePart part) {
+  constexpr std::array<char, 4> names{'r', 'g', 'b', 'a'};
+  std::string missing, there;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const bool is_taken = part == TexturePart::number ? c == texture.channel : c < 3;
+    const bool is_there = texture.file->has_channel(c);
+    if (is_taken && !is_there && names[c] != 'a') missing += names[c];
+    if (is_there) there += (there.empty() ? "" : ", ") + std::string(1, names[c]);
+  }
+  if (missing.empty()) return;
+  const std::string expected = "a channel of the image: " + there;
+  if (part == TexturePart::number && channel)
+    channel->fail("is not in " + printable(texture.file->path()), expected);
+  file.fail("refers to an image without the channel " + missing.substr(0, 1),
+            part == TexturePart::number ? "\"channel\": " + expected
+                                        : "the channels R, G and B, or Y, or one alone");
+}
+
+Texture read_texture(const Value& value, TexturePart part) {
+  const ObjectReader reader(value, "texture");
+  Texture texture;
+  texture.place = value.place();
+  const Value file = reader.need("texture");
+  try {
+    const std::string path = file.file_path();
+    texture.file =
+        TextureFile::open(path, space_of(reader, path, part),
+                          part == TexturePart::color ? TextureContent::colors : TextureContent::data);
+  } catch (const Error& failure) {
+    throw told_at(file.place(), failure);
+  }
+  if (const auto scale = reader.find("scale")) texture.scale = scale->number_or_triple();
+  const std::optional<Value> channel = reader.find("channel");
+  if (channel && part != TexturePart::number)
+    value.fail(part == TexturePart::color ? "is a colour" : "requires three numbers", "no 'channel'");
+  if (channel) texture.channel = channel->choice();
+  check_channels(file, channel, texture, part);
+  if (const auto uv_scale = reader.find("uv_scale")) texture.uv_scale = read_pair(*uv_scale);
+  if (const auto rotation = reader.find("uv_rotation")) texture.uv_rotation = rotation->number();
+  if (const auto offset = reader.find("uv_offset")) texture.uv_offset = read_pair(*offset);
+  return texture;
+}
+
+/// error outside the range of the value's row
+double checked(const Value& value, double number) {
+  const Range& range = value.info().range;
+  if (!(number >= range.low && number <= range.high))
+    value.fail("is out of range at every texel", "a texture and scale within the range of the key");
+  return number;
+}
+
+/// Constant value of an RGB texture with equal texels; else empty.
+std::optional<Vec3d> constant_of(const Value& value, const Texture& texture) {
+  const std::optional<Texel>& constant = texture.file->constant();
+  if (!constant) return {};
+  Vec3d triple;
+  for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, (*constant)[c] * texture.scale[c]);
+  return triple;
+}
+
+}  // namespace
+
+ColorReading read_color(const Value& value) {
+  if (!is_texture(value)) return {value.color(), {}};
+  Texture texture = read_texture(value, TexturePart::color);
+  if (const std::optional<Vec3d> constant = constant_of(value, texture)) return {Rgb(*constant), {}};
+  return {Rgb(1), std::move(texture)};
+}
+
+NumberReading read_number(const Value& value) {
+  if (!is_texture(value)) return {value.number(), {}};
+  Texture texture = read_texture(value, TexturePart::number);
+  const std::optional<Texel>& constant = texture.file->constant();
+  if (!constant) return {1, std::move(texture)};
+  return {checked(value, (*constant)[texture.channel] * texture.scale.x), {}};
+}
+
+TripleReading read_triple(const Value& value) {
+  if (!is_texture(value)) return {value.number_or_triple(), {}};
+  Texture texture = read_texture(value, TexturePart::triple);
+  if (const std::optional<Vec3d> constant = constant_of(value, texture)) return {*constant, {}};
+  return {Vec3d(1), std::move(texture)};
+}
+
+Texture read_normal_map(const Value& value) {
+  return read_texture(value, TexturePart::triple);
+}
+
+std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit) {
+  Texture texture = read_texture(value, TexturePart::number);
+  if (texture.file->constant()) return {};
+  texture.scale = texture.scale * mm_per_unit;
+  return texture;
+}
+
+}  // namespace opaline

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Conversion of checked values to the records of a Scene, one reader per section.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "opaline/scene.h"
+#include "values/value.h"
+
+namespace opaline {
+
+/// Scene properties used by shapes.
+struct ShapeContext {
+  double mm_per_unit = 1;
+  const std::vector<Medium>* media = nullptr;
+  std::map<std::string, std::size_t> group_media;  ///< filled while reading
+};
+
+/// A colour, or a texture with the colour 1. A file with equal texels becomes a constant.
+struct ColorReading {
+  Rgb color{1, 1, 1};
+  std::optional<Texture> texture;
+};
+ColorReading read_color(const Value& value);
+/// The same for a number.
+struct NumberReading {
+  double number = 1;
+  std::optional<Texture> texture;
+};
+NumberReading read_number(const Value& value);
+/// The same for a number for each of R, G and B; texels are linear by default.
+struct TripleReading {
+  Vec3d triple{1, 1, 1};
+  std::optional<Texture> texture;
+};
+TripleReading read_triple(const Value& value);
+Texture read_normal_map(const Value& value);
+/// Height map with its scale in mm; none: flat.
+std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);
+
+/// Index of refraction with the reflectance of `ior` at normal incidence, times the weight.
+/// from  OpenPBR Surface 1.1, specular_weight
+double weighted_ior(double ior, double weight);
+
+/// Reads `specular_anisotropy` and `specular_rotation`.
+Grain read_grain(const ObjectReader& reader);
+
+Medium read_medium(const Value& value, double mm_per_unit);
+/// `name`: default name of the shape.
+Shape read_shape(const Value& value, const std::string& name, ShapeContext& context);
+Light read_light(const Value& value, const std::string& name, double mm_per_unit);
+/// Without a value: the defaults, with lengths in scene units.
+Camera read_camera(const std::optional<Value>& value, double mm_per_unit);
+Film read_film(const Value& value);
+Settings read_settings(const Value& value, double mm_per_unit);
+
+/// Reads a list of steps, applied in order.
+Transform read_transform(const Value& value, double mm_per_unit);
+
+}  // namespace opaline

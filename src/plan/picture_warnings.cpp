@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "plan/picture_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "diffusion/diffuse_profile.h"
+#include "lights/light.h"
+#include "scene/scene_properties.h"
+#include "scene/source_place.h"
+#include "values/override_key.h"
+
+namespace opaline {
+namespace {
+
+// In units of white, after the exposure: below 16, below 64 and at 255 of a PNG's 255 levels.
+constexpr float kAlmostBlack = 0.005f, kDark = 0.05f, kOverexposed = 1.1f;
+constexpr double kWellExposed = 0.5;  // maximum of a well-exposed image
+constexpr double kFarAway = 30;       // diagonals of all shapes
+
+Bounds box_of(const World& world) {
+  Bounds all;
+  for (const Bounds& box : world.boxes) {
+    all.low = component_min(all.low, box.low);
+    all.high = component_max(all.high, box.high);
+  }
+  return all;
+}
+
+std::string point_text(const Vec3d& mm, double mm_per_unit) {
+  const Vec3d p = mm / mm_per_unit;
+  return fmt::format("[{:.4g},{:.4g},{:.4g}]", p.x, p.y, p.z);
+}
+
+std::size_t channel(const Image& image, const char* name) {
+  return std::size_t(std::ranges::find(image.channels, name) - image.channels.begin());
+}
+
+/// Largest channel of each covered pixel, of every step-th pixel.
+std::vector<float> brightness(const Image& image, std::size_t step) {
+  const std::size_t stride = image.channels.size(), count = image.pixels.size() / stride;
+  const std::size_t r = channel(image, "R"), g = channel(image, "G"), b = channel(image, "B"),
+                    coverage = channel(image, "A");
+  std::vector<float> values;
+  for (std::size_t p = 0; p < count; p += step) {
+    const float* pixel = image.pixels.data() + p * stride;
+    if (pixel[coverage] > 0) values.push_back(std::max({pixel[r], pixel[g], pixel[b]}) / pixel[coverage]);
+  }
+  return values;
+}
+
+/// Brightness is estimated from about 65,000 pixels; all pixels are searched for covered ones.
+std::vector<float> sampled_brightness(const Image& image) {
+  constexpr std::size_t enough = 65536;
+  const std::size_t step = (image.pixels.size() / image.channels.size() / enough) | 1;
+  std::vector<float> values = brightness(image, step);
+  return values.empty() && step > 1 ? brightness(image, 1) : values;
+}
+
+/// True if most covered pixels show the back of a surface; opaque surfaces have no back.
+bool is_inside(const Image& image, const Vec3d& camera) {
+  const std::size_t stride = image.channels.size(), coverage = channel(image, "A");
+  const std::array<std::size_t, 3> normal{channel(image, "N.X"), channel(image, "N.Y"),
+                                          channel(image, "N.Z")},
+      place{channel(image, "P.X"), channel(image, "P.Y"), channel(image, "P.Z")};
+  if (normal[2] == stride || place[2] == stride) return false;
+  std::size_t seen = 0, behind = 0;
+  for (std::size_t at = 0; at < image.pixels.size(); at += stride) {
+    const float* const pixel = image.pixels.data() + at;
+    if (pixel[coverage] < 1) continue;
+    double cosine = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      cosine += double(pixel[normal[i]]) * (double(pixel[place[i]]) - camera[i]);
+    ++seen;
+    if (cosine > 0) ++behind;
+  }
+  return 2 * behind > seen;
+}
+
+/// Pixel of a direction, in the full image. towards: in front of the camera
+std::string pixel_text(const Scene& scene, const Vec3d& towards) {
+  const Camera& camera = scene.camera;
+  const Vec3d forward = normalized(camera.look_at - camera.position),
+              right = normalized(cross(forward, camera.up)), up = cross(right, forward);
+  const auto [width, height] = scene.film.resolution;
+  const double scale =
+      height / 2. / (std::tan(camera.field_of_view * std::numbers::pi / 360) * dot(towards, forward));
+  return fmt::format("{:.0f},{:.0f} of {} x {}", width / 2. + scale * dot(towards, right),
+                     height / 2. - scale * dot(towards, up), width, height);
+}
+
+std::string nothing_in_view(const Scene& scene, const World& world) {
+  const Bounds box = box_of(world);
+  const Camera& camera = scene.camera;
+  const Vec3d middle = .5 * (box.low + box.high), towards = middle - camera.position;
+  const double distance = length(towards), radius = world.diagonal * world.unit / 2;
+  const double cosine = dot(normalized(towards), normalized(camera.look_at - camera.position));
+  const double pixels =
+      radius / distance / std::tan(camera.field_of_view * std::numbers::pi / 360) * scene.film.resolution[1];
+  const double degrees = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
+  std::string where = fmt::format("{:.0f} degrees from the view direction", degrees);
+  if (scene.film.crop && degrees < 90)
+    where = "around the pixel " + pixel_text(scene, towards);
+  else if (distance <= radius)
+    where = "around the camera";
+  else if (degrees > 90)
+    where = "behind the camera";
+  else if (pixels < 2)
+    where = fmt::format("so far away that together they are {:.2g} pixels wide", pixels);
+  else if (degrees < camera.field_of_view / 2)
+    where = "in the view, but possibly behind a light or thinner than a pixel";
+  const std::string look = "--set camera.look_at=" + point_text(middle, scene.mm_per_unit);
+  std::string advice = look + " centres them";
+  if (scene.film.crop) {
+    advice = "render a small --resolution without a crop to locate them";
+  } else if (distance <= radius) {
+    const double far = 1.2 * radius / std::sin(camera.field_of_view * std::numbers::pi / 360);
+    const Vec3d back = distance > 0 ? normalized(towards) : normalized(camera.look_at - camera.position);
+    advice = fmt::format("{} --set camera.position={} views them from outside", look,
+                         point_text(middle - back * far, scene.mm_per_unit));
+  } else if (degrees < camera.field_of_view / 2 && pixels >= 2) {
+    advice = "move the light, set \"visible\": false for it, or choose a higher --resolution";
+  } else if (distance > radius && degrees <= 90 && pixels < 2) {
+    const double near = radius / std::sin(camera.field_of_view * std::numbers::pi / 360);
+    advice = fmt::format("{} --set camera.position={} shows them", look,
+                         point_text(middle - towards * (near / distance), scene.mm_per_unit));
+  }
+  return fmt::format("no shape is visible{}: the shapes are between {} and {} (scene units), {}; {}",
+                     scene.film.crop ? " in the crop" : "", point_text(box.low, scene.mm_per_unit),
+                     point_text(box.high, scene.mm_per_unit), where, advice);
+}
+
+/// Problems of single lights, if the image is too dark.
+std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
+  const Bounds box = box_of(world);
+  const Vec3d middle = .5 * (box.low + box.high);
+  std::vector<std::string> texts;
+  for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+    const Light& light = scene.lights[l];
+    if (l > 0 && share_rays(scene.lights[l - 1], light)) continue;  // another channel of an environment
+    const std::optional<Vec3d> place = extent(light).center;
+    const double distance = place ? length(*place - middle) : 0;
+    if (emission(light) == Rgb{})
+      texts.push_back(fmt::format("the light {} emits nothing", light.name));
+    else if (distance > kFarAway * world.diagonal * world.unit)
+      texts.push_back(fmt::format(
+          "the light {} is {:.3g} scene units away from the shapes, whose total extent is {:.3g}", light.name,
+          distance / scene.mm_per_unit, world.diagonal * world.unit / scene.mm_per_unit));
+  }
+  return texts;
+}
+
+/// Point lights fall off with the square of the distance in mm, whatever the scene's unit: the usual cause of
+/// a brightness wrong by the square of the unit.
+std::string unit_text(const Scene& scene, double brightest) {
+  const double factor = scene.mm_per_unit * scene.mm_per_unit, meant = brightest * factor;
+  const bool has_points = std::ranges::any_of(scene.lights, [](const Light& light) {
+    return is_delta(light) && extent(light).center && emission(light) != Rgb{};
+  });
+  if (!has_points || factor == 1 || meant < double(kAlmostBlack) || meant > 100) return {};
+  return fmt::format(
+      "; mm_per_unit is {:g}, but intensity / distance^2 is in W/mm^2: multiply an intensity given for scene "
+      "units by {:g}",
+      scene.mm_per_unit, factor);
+}
+
+/// "; use --exposure 7"
+std::string exposure_text(const Scene& scene, double brightest) {
+  const double stops =
+      std::clamp(scene.film.exposure + std::round(std::log2(kWellExposed / brightest)), -100.0, 100.0);
+  return fmt::format("; use --exposure {:g}", stops);
+}
+
+/// True if a medium is black; the plan already warns of it.
+bool has_black_medium(const Scene& scene) {
+  return std::ranges::any_of(scene.shapes, [&](const Shape& shape) {
+    return shape.medium && !make_diffuse_profile(scene.media[*shape.medium]).translucent;
+  });
+}
+
+bool is_black(const Rgb& color, const std::optional<Texture>& texture) {
+  return color == Rgb{} || (texture && texture->scale == Vec3d{});
+}
+
+/// Why a surface stays black in any light: "the tint of medium wax is 0"; empty: it does not.
+std::string cause_of_black(const Scene& scene, const Shape& shape) {
+  if (shape.medium) {
+    const Medium& medium = scene.media[*shape.medium];
+    const auto* artist = std::get_if<ArtistMedium>(&medium.coefficients);
+    const bool is_opaque = is_partly_opaque(medium) && !is_black(medium.base_color, medium.base_texture);
+    if (!is_opaque &&
+        (is_black(medium.tint, medium.tint_texture) || (artist && artist->subsurface_color == Rgb{})))
+      return "the colour of the medium " + medium.name + " is 0";
+    return {};
+  }
+  if (is_black(shape.reflectance, shape.reflectance_texture))
+    return "the reflectance of " + shape.name + " is 0";
+  if (shape.gloss && shape.gloss->metalness == 1)
+    return shape.name + " is a metal, which reflects only surroundings, environments and lights";
+  return {};
+}
+
+/// Causes, if every shape has one.
+std::string black_surfaces(const Scene& scene) {
+  std::string text;
+  for (const Shape& shape : scene.shapes) {
+    const std::string cause = cause_of_black(scene, shape);
+    if (cause.empty()) return {};
+    if (text.find(cause) == text.npos) text += (text.empty() ? "" : "; ") + cause;
+  }
+  return text;
+}
+
+std::string too_dark(const Scene& scene, const World& world, double brightest) {
+  const std::vector<std::string> causes = weak_lights(scene, world);
+  std::string text = "black";
+  if (brightest > 0)
+    text = fmt::format("almost black: the maximum of the object is {:.2g} x white{}{}", brightest,
+                       exposure_text(scene, brightest), unit_text(scene, brightest));
+  else if (const std::string black = black_surfaces(scene); !black.empty())
+    text += ": " + black;
+  else if (causes.empty() && lights_that_miss(scene, world).empty() && !has_black_medium(scene))
+    text +=
+        ": no light reaches the visible surfaces; all lights may be behind them, inside a shape or in shadow";
+  for (const std::string& cause : causes) text += "; " + cause;
+  return "the image is " + text;
+}
+
+using Corners = std::array<Vec3d, 3>;
+
+/// Largest positive cosine between a unit axis and the directions from the origin to points of an edge.
+double largest_cosine(const Vec3d& a, const Vec3d& b, const Vec3d& axis) {
+  const Vec3d edge = b - a;
+  const double along = dot(edge, axis), start = dot(a, axis), both = dot(a, edge);
+  const double place = (along * dot(a, a) - start * both) / (start * dot(edge, edge) - along * both);
+  double largest = -1;
+  for (const double t : {0., std::isfinite(place) ? std::clamp(place, 0., 1.) : 0., 1.}) {
+    const Vec3d point = a + edge * t;
+    largest = std::max(largest, dot(point, axis) / length(point));
+  }
+  return largest;
+}
+
+/// True if a cone with its apex at the origin and a triangle intersect: an edge is in it, or its axis passes
+/// through the triangle.
+bool meets_cone(const Corners& corners, const Vec3d& axis, double least_cosine) {
+  const auto& [a, b, c] = corners;
+  for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
+    if (largest_cosine(from, to, axis) > least_cosine) return true;
+  const double sides[3] = {dot(axis, cross(a, b)), dot(axis, cross(b, c)), dot(axis, cross(c, a))};
+  const bool is_within =
+      (sides[0] > 0 && sides[1] > 0 && sides[2] > 0) || (sides[0] < 0 && sides[1] < 0 && sides[2] < 0);
+  const Vec3d normal = cross(b - a, c - a);
+  return is_within && dot(axis, normal) * dot(a, normal) > 0;
+}
+
+/// True if the light's half space or cone contains a surface, in shadow or not.
+bool reaches_a_surface(const Light& light, const World& world) {
+  constexpr double kGrazing = 1e-6;  // diagonals
+  const LightExtent lamp = extent(light);
+  if (!lamp.facing) return true;
+  const Vec3d center = into_world(world, *lamp.center), axis = *lamp.facing;
+  const auto* const spot = std::get_if<SpotLight>(&light.source);
+  const auto is_met = [&](const Corners& corners) {
+    if (spot != nullptr)
+      return meets_cone(corners, axis, std::cos(spot->outer_angle * std::numbers::pi / 180));
+    return std::ranges::any_of(
+        corners, [&](const Vec3d& corner) { return dot(axis, corner) > kGrazing * world.diagonal; });
+  };
+  return std::ranges::any_of(world.meshes, [&](const Mesh& mesh) {
+    return std::ranges::any_of(mesh.triangles, [&](const auto& t) {
+      return is_met(
+          {mesh.positions[t[0]] - center, mesh.positions[t[1]] - center, mesh.positions[t[2]] - center});
+    });
+  });
+}
+
+/// Advice for a light reaching no surface.
+std::string way_to_turn(const Scene& scene, const World& world, const Light& light) {
+  if (!is_delta(light)) return "it emits on the side of u x v; exchange u and v";
+  const Bounds box = box_of(world);
+  std::size_t index = 0;  // in the file, where the channels of an environment are one light
+  for (std::size_t l = 0; &scene.lights[l] != &light; ++l)
+    index += scene.lights[l].name != scene.lights[l + 1].name ? 1 : 0;
+  return fmt::format("its cone misses all shapes; --set lights.{}.direction={} points it at their centre",
+                     override_key(light.name, index),
+                     point_text(.5 * (box.low + box.high) - *extent(light).center, scene.mm_per_unit));
+}
+
+}  // namespace
+
+std::vector<std::string> picture_warnings(const Scene& scene, const World& world, const Image& image) {
+  if (world.meshes.empty() || scene.lights.empty()) return {};  // the plan warns of this
+  std::vector<float> values = sampled_brightness(image);
+  if (values.empty()) return {nothing_in_view(scene, world)};
+  if (is_inside(image, scene.camera.position))
+    return {
+        "the camera sees the back side of a translucent surface; it is inside the body, or views an open "
+        "mesh; move the camera, or close the mesh"};
+  const double gain = std::exp2(scene.film.exposure);
+  const auto quantile = [&](double share) {
+    const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+    std::ranges::nth_element(values, at);
+    return double(*at) * gain;
+  };
+  const double brightest = quantile(.99), usual = quantile(.5);
+  if (brightest < double(kAlmostBlack)) return {too_dark(scene, world, brightest)};
+  if (brightest < double(kDark))
+    return {fmt::format("the image is dark: 99 % of the visible surface is at most {:.2g} x white{}{}",
+                        brightest, exposure_text(scene, brightest), unit_text(scene, brightest))};
+  if (usual > double(kOverexposed))
+    return {fmt::format("half of the object is overexposed ({:.2g} x white){}{}", usual,
+                        exposure_text(scene, usual), unit_text(scene, usual))};
+  return {};
+}
+
+std::vector<std::string> lights_that_miss(const Scene& scene, const World& world) {
+  std::vector<std::string> texts;
+  if (world.meshes.empty()) return texts;
+  for (const Light& light : scene.lights)
+    if (!reaches_a_surface(light, world))
+      texts.push_back(text_at(light.place, fmt::format("the light {} reaches no surface: {}", light.name,
+                                                       way_to_turn(scene, world, light))));
+  return texts;
+}
+
+}  // namespace opaline

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From everything to a picture.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "opaline/image.h"
+#include "opaline/session.h"
+#include "subsurface/held_view.h"
+#include "subsurface/render_input.h"
+
+namespace opaline {
+
+/// Pixels [x0, x1) x [y0, y1) of the whole picture.
+struct Rectangle {
+  int x0, y0, x1, y1;
+};
+
+/// Rendered rectangle: the crop of the film, or the whole film.
+Rectangle rendered_part(const Film& film);
+
+/// A larger view is not held, bytes.
+inline constexpr std::size_t kMostHeldBytes = std::size_t(256) << 20;
+inline constexpr std::size_t kMostCoatBytes = std::size_t(256) << 20;  ///< besides, of HeldView::Coat
+
+/// Radiance seen by the camera.
+/// `hierarchical`: translucent surfaces send out M_o Ft(omega_o) / (pi (1 - F_bar)) with M_o from the trees;
+/// `lambert`: the same with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing
+/// mean free path and the floor of all costs. Both add the mirror image of area lights and surroundings,
+/// weight F. Opaque surfaces are Lambertian.
+/// Lights light all of them, and with settings.bounces surfaces light each other, once.
+RenderResult render(const RenderInput& input);
+
+/// For RenderInput::bounced, with what else the input has.
+std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input);
+
+}  // namespace opaline

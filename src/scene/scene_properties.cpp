@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/scene_properties.h"
+
+#include <algorithm>
+
+namespace opaline {
+namespace {
+
+bool sends_light(const Shape& shape) {
+  return shape.medium.has_value() || shape.reflectance != Rgb{};
+}
+
+bool are_one_thing(const Shape& a, const Shape& b) {
+  return a.medium && b.medium && !a.group.empty() && a.group == b.group;
+}
+
+}  // namespace
+
+int bounces_of(const Scene& scene) {
+  if (scene.lights.empty()) return 0;
+  if (scene.settings.bounces) return *scene.settings.bounces;
+  if (scene.settings.method == Method::volume) return 0;
+  const auto first = std::ranges::find_if(scene.shapes, sends_light);
+  return std::any_of(first, scene.shapes.end(), [&](const Shape& other) {
+    return &other != &*first && sends_light(other) && !are_one_thing(*first, other);
+  });
+}
+
+std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) {
+  std::vector<const Texture*> textures;
+  const auto add = [&](const std::optional<Texture>& texture) {
+    if (texture) textures.push_back(&*texture);
+  };
+  add(shape.reflectance_texture);
+  add(shape.normal_map);
+  add(shape.bump_map);
+  if (shape.gloss) {
+    add(shape.gloss->metalness_texture);
+    add(shape.gloss->roughness_texture);
+  }
+  if (!shape.medium) return textures;
+  add(scene.media[*shape.medium].tint_texture);
+  add(scene.media[*shape.medium].roughness_texture);
+  add(scene.media[*shape.medium].radius_texture);
+  if (!is_partly_opaque(scene.media[*shape.medium])) return textures;
+  add(scene.media[*shape.medium].weight_texture);
+  add(scene.media[*shape.medium].base_texture);
+  return textures;
+}
+
+bool needs_uvs(const Scene& scene, const Shape& shape) {
+  return !textures_of(scene, shape).empty();
+}
+
+const Grain* grain_of(const Scene& scene, const Shape& shape) {
+  const auto found = [](const Grain& grain, double roughness, const std::optional<Texture>& texture) {
+    return grain.anisotropy > 0 && (roughness > 0 || texture) ? &grain : nullptr;
+  };
+  if (shape.medium) {
+    const Medium& medium = scene.media[*shape.medium];
+    return found(medium.grain, medium.specular_roughness, medium.roughness_texture);
+  }
+  return shape.gloss ? found(shape.gloss->grain, shape.gloss->roughness, shape.gloss->roughness_texture)
+                     : nullptr;
+}
+
+MeshUvs uvs_of(const Scene& scene, const Shape& shape) {
+  const bool has_grain = grain_of(scene, shape) != nullptr;
+  if (needs_uvs(scene, shape))
+    return has_grain || shape.normal_map ? MeshUvs::with_tangents : MeshUvs::required;
+  return has_grain ? MeshUvs::if_any : MeshUvs::unread;
+}
+
+}  // namespace opaline

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session with the records that it gives access to, for the program and its tests.
+#pragma once
+
+#include "bodies/body.h"
+#include "bodies/plan.h"
+#include "core/stopwatch.h"
+#include "geometry/ray_scene.h"
+#include "geometry/world.h"
+#include "opaline/session.h"
+#include "render/render.h"
+#include "stages/session_work.h"
+#include "stages/stage_cache.h"

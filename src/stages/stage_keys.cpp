@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/stage_keys.h"
+
+#include "bodies/surface_textures.h"
+#include "geometry/embree.h"
+#include "lights/light.h"
+#include "scene/scene_properties.h"
+
+namespace opaline {
+namespace {
+
+// Raise a stage's number when it computes other values from the same input (test_stage_versions).
+constexpr std::uint64_t kSamplesVersion = 2, kCutSurfaceVersion = 2, kCarriedVersion = 3,
+                        kTransferVersion = 4, kOctreeVersion = 1, kWalkedProfileVersion = 1;
+
+}  // namespace
+
+const char* widest_instructions() {
+  if (__builtin_cpu_supports("avx512f")) return "avx512";
+  if (__builtin_cpu_supports("avx2")) return "avx2";
+  if (__builtin_cpu_supports("avx")) return "avx";
+  return __builtin_cpu_supports("sse4.2") ? "sse4.2" : "sse2";
+}
+
+std::string embree_version() {
+  return RTC_VERSION_STRING;
+}
+
+MeshKeys mesh_keys(const Mesh& mesh) {
+  KeyBuilder shape("mesh", 1);
+  shape.add_array(std::span(mesh.positions)).add_array(std::span(mesh.triangles));
+  MeshKeys keys{shape.key(), {}, {}, 0};
+  keys.all = KeyBuilder("mesh with normals", 1).add(keys.shape).add_array(std::span(mesh.normals)).key();
+  const Bounds box = bounds(mesh);
+  keys.center = 0.5 * (box.low + box.high);
+  for (const Vec3d& p : mesh.positions) keys.radius = std::max(keys.radius, length(p - keys.center));
+  return keys;
+}
+
+std::vector<MeshKeys> mesh_keys(const World& world) {
+  std::vector<MeshKeys> keys;
+  for (const Mesh& mesh : world.meshes) keys.push_back(mesh_keys(mesh));
+  return keys;
+}
+
+StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group) {
+  const GroupPlan& plan = input.plan.groups[group];
+  KeyBuilder key("samples", kSamplesVersion);
+  key.add(std::uint64_t(plan.samples)).add(sampling_seed(input.scene.settings, group));
+  for (const std::uint32_t m : plan.meshes) key.add(meshes[m].all);
+  return key.key();
+}
+
+StageKey cut_surface_key(const GroupPlan& group, std::span<const MeshKeys> meshes, double unit) {
+  KeyBuilder key("cut surface", kCutSurfaceVersion);
+  key.add(group.cell / unit).add(std::uint64_t(group.cell_parts));
+  for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
+  return key.key();
+}
+
+StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,
+                             double unit) {
+  KeyBuilder key("carried samples", kCarriedVersion);
+  key.add(from).add(unit);
+  for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
+  return key.key();
+}
+
+StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
+                      std::size_t group, const Light& light) {
+  const GroupPlan& plan = input.plan.groups[group];
+  const Settings& settings = input.scene.settings;
+  KeyBuilder key("transfer", kTransferVersion);
+  key.add(embree_version()).add(std::string(widest_instructions()));
+  key.add(samples).add(input.scene.media[plan.medium].eta).add(std::uint64_t(light.source.index()));
+  key.add_array(std::span<const double>(geometry(light)));
+  if (!is_delta(light))
+    key.add(settings.light_samples).add(light_seed(irradiance_seed(settings, group), light));
+  if (plan.cell > 0) key.add(std::string("geometric normals"));
+  for (std::uint32_t m = 0; m < meshes.size(); ++m)
+    if (may_shadow(meshes, m, plan, light, input.world.unit)) key.add(meshes[m].shape);
+  return key.key();
+}
+
+StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
+                      std::span<const Light> lights) {
+  const Settings& settings = input.scene.settings;
+  KeyBuilder key("surfaces in their light", 4);
+  key.add(settings.seed)
+      .add(settings.tolerance)
+      .add(settings.evaluator)
+      .add(settings.laboratory.max_solid_angle);
+  for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
+    const Shape& shape = input.scene.shapes[i];
+    if (shape.medium) {
+      const Medium& medium = input.scene.media[*shape.medium];
+      key.add(medium.tint).add(medium.texture_mix).add(medium.eta).add(medium.specular_roughness);
+      if (medium.texture_mix == TextureMix::medium) key.add(settings.method);
+      key.add(medium.grain.anisotropy).add(medium.grain.rotation);
+      if (is_partly_opaque(medium)) key.add(medium.subsurface_weight).add(medium.base_color);
+    } else {
+      key.add(shape.reflectance).add(shape.gloss.has_value());
+      if (const auto& gloss = shape.gloss) {
+        key.add(gloss->metalness).add(gloss->roughness).add(gloss->eta);
+        key.add(gloss->grain.anisotropy).add(gloss->grain.rotation);
+      }
+    }
+    for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
+    if (uvs_of(input.scene, shape) != MeshUvs::unread) add_coordinates(key, input.world.meshes[i]);
+    if (uses_vertex_colors(input.scene, shape, input.world.meshes[i]))
+      key.add(shape.has_reflectance).add_array(std::span(input.world.meshes[i].colors));
+  }
+  for (const Light& light : lights) key.add(view_light_key(light)).add(emission(light));
+  return key.key();
+}
+
+StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes) {
+  const Camera& camera = input.scene.camera;
+  const Film& film = input.scene.film;
+  KeyBuilder key("view", 2);
+  key.add(camera.position).add(camera.look_at).add(camera.up).add(camera.field_of_view);
+  key.add(input.world.origin).add(input.world.unit);
+  key.add(film.resolution).add(film.samples_per_pixel).add(film.filter);
+  if (film.crop) key.add(*film.crop);
+  key.add(input.plan.rays);
+  for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  return key.key();
+}
+
+StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights) {
+  const Settings& settings = input.scene.settings;
+  KeyBuilder key("surfaces of the view", 1);
+  key.add(settings.method).add(settings.light_samples).add(point_irradiance_seed(settings));
+  for (const Light& light : lights)
+    if (!is_delta(light)) {
+      key.add(view_light_key(light));
+      if (!light.is_seen) key.add(std::string("unseen"));
+    }
+  for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
+    const Shape& shape = input.scene.shapes[i];
+    key.add(shape.medium.has_value());
+    if (shape.medium) key.add(is_partly_opaque(input.scene.media[*shape.medium]));
+    for (const auto& map : {&shape.normal_map, &shape.bump_map})
+      if (*map) add_to_key(key, **map);
+    if (shape.normal_map || shape.bump_map) add_coordinates(key, input.world.meshes[i]);
+  }
+  for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
+  return key.key();
+}
+
+StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
+                       const StageKey& surfaces) {
+  KeyBuilder key("near fields of the view", 1);
+  key.add(surfaces).add(input.scene.film.samples_per_pixel).add(input.plan.rays);
+  key.add(input.world.origin).add(input.world.unit);
+  for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  return key.key();
+}
+
+StageKey view_coats_key(const Scene& scene) {
+  KeyBuilder key("coats of the view", 1);
+  for (const Shape& shape : scene.shapes) {
+    if (shape.medium) {
+      const Medium& medium = scene.media[*shape.medium];
+      key.add(medium.specular_roughness).add(medium.grain.anisotropy).add(medium.grain.rotation);
+    }
+    if (shape.gloss)
+      key.add(shape.gloss->roughness).add(shape.gloss->grain.anisotropy).add(shape.gloss->grain.rotation);
+  }
+  return key.key();
+}
+
+StageKey view_light_key(const Light& light) {
+  KeyBuilder key("light of the view", 1);
+  key.add(std::uint64_t(light.source.index())).add(light_seed(0, light));
+  key.add_array(std::span<const double>(geometry(light)));
+  return key.key();
+}
+
+StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> transfers,
+                         std::span<const Light> lights, const StageKey& tint) {
+  KeyBuilder key("octree", kOctreeVersion);
+  key.add(samples);
+  if (tint != StageKey{}) key.add(tint);
+  for (std::size_t l = 0; l < lights.size(); ++l) key.add(transfers[l]).add(emission(lights[l]));
+  return key.key();
+}
+
+StageKey walked_profile_key(double absorbed, double eta) {
+  return KeyBuilder("walked profile", kWalkedProfileVersion).add(absorbed).add(eta).key();
+}
+
+}  // namespace opaline

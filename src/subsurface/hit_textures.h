@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texture values at a hit.
+#pragma once
+
+#include <optional>
+
+#include "bodies/surface_textures.h"
+
+namespace opaline {
+
+struct HitTextures {
+  SurfaceTint tint;
+  RgbF reflected{};                           ///< SurfaceTextures::reflected
+  std::optional<float> roughness, metalness;  ///< none: the surface's own
+  bool is_bent = false;                       ///< maps have turned the shading normal
+  Vec3f tangent{};                            ///< SurfaceTextures::tangent
+  float tangent_share = 0;                    ///< cos^2 of the view direction's azimuth from the tangent
+};
+
+}  // namespace opaline

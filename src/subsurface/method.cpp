@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "subsurface/method.h"
+
+#include "subsurface/plan_samples.h"
+
+namespace opaline {
+
+void SubsurfaceMethod::plan(const BodyPlanning& input, GroupPlan& body,
+                            std::vector<std::string>& warnings) const {
+  choose_samples(input.scene, input.fewest_samples, body, warnings);
+}
+
+std::string SubsurfaceMethod::light_stage(const Scene& scene, std::span<const Light> lights) const {
+  return irradiance_stage(scene, lights);
+}
+
+std::string SubsurfaceMethod::bounces_stage() const {
+  return "bounces: light between shapes, one bounce, gathered at the samples and at 64 x 64 points of the "
+         "image, more in corners";
+}
+
+}  // namespace opaline

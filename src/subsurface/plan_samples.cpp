@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "subsurface/plan_samples.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "bodies/local_media.h"
+#include "bodies/plan_texts.h"
+#include "core/units.h"
+#include "diffusion/diffuse_profile.h"
+#include "scene/scene_properties.h"
+#include "volume/volume_diffusion.h"
+
+namespace opaline {
+namespace {
+
+// Lower bounds resolving the irradiance itself, however far light travels inside. With many bodies, each is
+// small in the image, and all share kFewestOfAll.
+constexpr double kFewestSamples = 10000, kFewestOfAll = 2e6, kFewestOfMany = 100;
+constexpr double kSuspiciouslyFew = 100;
+constexpr const char* kTheMinimum = "the minimum";
+
+// Largest sample spacing: 1.5 mean free paths, or the diffuse mean free path if that is shorter, but at least
+// one mean free path. SplitKernel takes transport below the spacing from the irradiance at the shading point
+// itself. Where diffuse light decays faster, the exitance in shadow depends on the exact sample positions, so
+// the spacing follows the decay.
+double widest_spacing(const DiffuseProfile& profile) {
+  double widest = INFINITY;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double length = profile.mean_free_path[c];
+    if (profile.total[c] > 0 && length > 0)
+      widest = std::min(widest, std::clamp(profile.diffuse_mean_free_path[c], length, 1.5 * length));
+  }
+  return widest;
+}
+
+void warn_of_few_samples(const GroupPlan& group, double wanted, std::vector<std::string>& warnings) {
+  if (wanted < kSuspiciouslyFew)
+    warnings.push_back(
+        fmt::format("{}: the mean free path of {:.4g} mm requires only {:.1f} samples on {:.4g} mm^2; light "
+                    "crosses the whole object, and diffusion is a poor model; check mm_per_unit",
+                    group.name, group.smallest_mean_free_path, wanted, group.area));
+}
+
+/// Number of samples from the settings, if set.
+std::optional<double> set_samples(const Settings& settings, double area) {
+  if (settings.samples) return double(*settings.samples);
+  if (settings.sample_spacing) return area / (*settings.sample_spacing * *settings.sample_spacing);
+  return {};
+}
+
+/// Smallest diffuse mean free path of the scattering channels, mm.
+double shortest_fading(Medium medium) {
+  medium.profile = ProfileKind::dipole;  // classical D, as in the diffusion equation
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  double shortest = INFINITY;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (profile.total[c] > 0 && !is_local(profile, c))
+      shortest = std::min(shortest, profile.diffuse_mean_free_path[c]);
+  return shortest;
+}
+
+}  // namespace
+
+double fewest_samples(std::size_t bodies) {
+  return std::clamp(kFewestOfAll / double(bodies), kFewestOfMany, kFewestSamples);
+}
+
+void choose_samples(const Scene& scene, double fewest, GroupPlan& group, std::vector<std::string>& warnings) {
+  const Settings& settings = scene.settings;
+  const double mean_free_path = group.smallest_mean_free_path,
+               spacing = widest_spacing(make_diffuse_profile(scene.media[group.medium]));
+  // Without a mean free path, light leaves where it enters, and no samples are necessary.
+  const double wanted = std::isfinite(spacing) ? group.area / (spacing * spacing) : fewest;
+  double count = set_samples(settings, group.area).value_or(std::max(wanted, fewest));
+  if (settings.samples) {
+    group.reason = "settings.samples";
+  } else if (settings.sample_spacing) {
+    group.reason = fmt::format("settings.sample_spacing of {:.4g} mm", *settings.sample_spacing);
+  } else if (wanted <= fewest) {
+    group.reason = kTheMinimum;
+  } else {
+    group.reason =
+        fmt::format("{:.2f} mean free paths of {:.4g} mm", spacing / mean_free_path, mean_free_path);
+  }
+  if (count > double(settings.max_samples)) {
+    warnings.push_back(
+        fmt::format("{}: requires {:.3g} samples ({}) but uses {} (settings.max_samples); check mm_per_unit: "
+                    "the area is {:.4g} mm^2, the mean free path {:.4g} mm",
+                    group.name, count, group.reason, settings.max_samples, group.area, mean_free_path));
+    count = double(settings.max_samples);
+    group.reason = "settings.max_samples";
+  }
+  warn_of_few_samples(group, wanted, warnings);
+  group.samples = std::max<std::size_t>(1, std::size_t(std::ceil(count)));
+  group.spacing = std::sqrt(group.area / double(group.samples));
+}
+
+std::string samples_text(const GroupPlan& group) {
+  const std::string count = grouped(group.samples) + (group.samples == 1 ? " sample" : " samples");
+  if (group.reason == kTheMinimum) return fmt::format("{} ({})", count, group.reason);
+  return fmt::format("{}, spacing {:.4g} mm: {}", count, group.spacing, group.reason);
+}
+
+std::string mean_free_path_text(const GroupPlan& group) {
+  if (!(group.smallest_mean_free_path > 0)) return "no mean free path (diffuse reflection)";
+  return fmt::format("mean free path {:.4g} mm (smallest channel)", group.smallest_mean_free_path);
+}
+
+double widest_cell(const Settings& settings) {
+  return std::max(kWidestCell, settings.cell_size);
+}
+
+bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group) {
+  const double widest = widest_cell(settings) * group.smallest_mean_free_path;
+  return widest > 0 && expected_cells(group.area, 0, widest) > kMostCells;
+}
+
+bool is_too_thin_for_cells(const GroupPlan& group) {
+  constexpr double kTooThin = .6;  // mean free paths; src/volume/README.md
+  return group.thickness > 0 && group.thickness < kTooThin * group.smallest_mean_free_path;
+}
+
+// Cell size of volume_diffusion: as set, smaller to resolve the decay of light and thin bodies, and larger to
+// limit memory.
+void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
+                  std::vector<std::string>& warnings) {
+  constexpr double kAcrossThin = 4, kSmallest = .25;
+  constexpr double kOfVarying = .5;    // a cell has one medium, and light blurs detail below a mean free path
+  constexpr double kFewestFaces = 60;  // fewest faces of cells, on the surface
+  const double length = group.smallest_mean_free_path;
+  const Medium& medium = scene.media[group.medium];
+  group.cell = scene.settings.cell_size * (varies_inside(medium)
+                                               ? kOfVarying * short_length_of(scene, world, group)
+                                               : std::min(length, kPerFading * shortest_fading(medium)));
+  if (group.thickness > 0)
+    group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));
+  group.cell = std::min(group.cell, std::sqrt(group.area / kFewestFaces));
+  const double most_faces =
+      std::min(kMostCells / expected_cells(1, 0, 1), double(scene.settings.max_samples) / kCutSamplesPerFace);
+  group.cell = std::max(group.cell, std::sqrt(group.area / most_faces));
+  if (group.cell > widest_cell(scene.settings) * length)
+    warnings.push_back(fmt::format(
+        "{}: light leaves within {:.3g} mm, but settings.max_samples limits the cells to {:.3g} mm",
+        group.name, length, group.cell));
+  if (is_too_thin_for_cells(group))
+    warnings.push_back(
+        fmt::format("{}: the mean thickness is {:.3g} mean free paths; diffusion cannot model light that "
+                    "crosses a body almost without scattering; use --method volume",
+                    group.name, group.thickness / length));
+}
+
+// Divides a cell's edge to come close to the requested samples, with at least one sample per cell cut by the
+// surface.
+void choose_cut(const Settings& settings, double fewest, GroupPlan& group,
+                std::vector<std::string>& warnings) {
+  const double whole = kCutSamplesPerFace * group.area / (group.cell * group.cell);
+  const double wanted = set_samples(settings, group.area).value_or(fewest);
+  double parts = std::min(std::round(std::sqrt(wanted / whole)),
+                          std::floor(std::sqrt(double(settings.max_samples) / whole)));
+  // The cells along a wire thinner than a cell depend on its length, not its area: finer ones would be many
+  // and of no use.
+  constexpr double kPartsOfThickness = 8;
+  if (group.thickness > 0) parts = std::min(parts, kPartsOfThickness * group.thickness / group.cell);
+  group.cell_parts = int(std::max(1., parts));
+  group.samples =
+      std::max<std::size_t>(1, std::size_t(std::ceil(whole * group.cell_parts * group.cell_parts)));
+  group.spacing = std::sqrt(group.area / double(group.samples));
+  group.reason = fmt::format("one per surface cell of {:.4g} mm", group.cell / double(group.cell_parts));
+  const double length = group.smallest_mean_free_path;
+  warn_of_few_samples(group, length > 0 ? group.area / (length * length) : fewest, warnings);
+}
+
+}  // namespace opaline

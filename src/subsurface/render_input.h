@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that an image depends on.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "bodies/body.h"
+#include "opaline/monitor.h"
+#include "subsurface/held_view.h"
+
+namespace opaline {
+
+/// Light that surfaces send to what a camera sees, at places of its picture.
+class BouncedPlaces;
+
+struct RenderInput {
+  const Scene& scene;
+  const World& world;
+  const RayScene& rays;
+  std::span<const Body> groups = {};  ///< bodies from the precompute; not needed by Method::lambert
+  Monitor* monitor = nullptr;
+  HeldView* view = nullptr;  ///< cached view of an earlier image, or new; at most kMostHeldBytes
+  /// Where light bounces: gathered for this or another view of the same surfaces in the same light; null: for this one,
+  /// by render.
+  std::shared_ptr<const BouncedPlaces> bounced = {};
+};
+
+}  // namespace opaline

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "values/nearest_name.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "values/json_tree.h"
+#include "values/key_info.h"
+
+namespace opaline {
+namespace {
+
+/// Insertions, deletions, substitutions and swaps of neighbours turning a into b (optimal string
+/// alignment).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    std::swap(before, last);
+    std::swap(last, row);
+  }
+  return last[b.size()];
+}
+
+using Names = std::vector<std::string>;
+
+std::string suggestion(const Names& names) {
+  if (names.empty()) return {};
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "'" : " or '") + printable(name) + '\'';
+  return " (did you mean " + text + "?)";
+}
+
+struct OtherWord {
+  std::string_view word;
+  std::array<std::string_view, 7> own = {};
+};
+
+// Other programs' names of keys and choices.
+constexpr OtherWord kOtherWords[] = {
+    {"absorption", {"sigma_a"}},
+    {"albedo", {"subsurface_color", "base_color", "reflectance"}},
+    {"area", {"quad"}},
+    {"background", {"surroundings"}},
+    {"base_color", {"reflectance"}},
+    {"brightness", {"intensity", "radiance", "irradiance", "strength"}},
+    {"burley", {"normalized_diffusion"}},
+    {"color",
+     {"subsurface_color", "base_color", "reflectance", "intensity", "radiance", "irradiance", "strength"}},
+    {"colour",
+     {"subsurface_color", "base_color", "reflectance", "intensity", "radiance", "irradiance", "strength"}},
+    {"diffuse", {"base_color", "reflectance"}},
+    {"distant", {"directional"}},
+    {"dome", {"environment"}},
+    {"emission", {"radiance"}},
+    {"eye", {"position"}},
+    {"filename", {"file"}},
+    {"filmic", {"agx"}},
+    {"fov", {"field_of_view"}},
+    {"hdri", {"environment"}},
+    {"height", {"resolution"}},
+    {"infinite", {"environment"}},
+    {"integrator", {"method"}},
+    {"intensity", {"radiance", "irradiance", "strength"}},
+    {"ior", {"specular_ior"}},
+    {"jensen", {"dipole"}},
+    {"location", {"position"}},
+    {"material", {"medium"}},
+    {"materials", {"media"}},
+    {"mean_free_path", {"subsurface_radius"}},
+    {"mesh", {"file"}},
+    {"metallic", {"metalness"}},
+    {"mfp", {"subsurface_radius"}},
+    {"objects", {"shapes"}},
+    {"origin", {"position"}},
+    {"path", {"volume"}},
+    {"position", {"center"}},
+    {"power", {"intensity", "radiance", "irradiance", "strength"}},
+    {"radiance", {"intensity", "irradiance", "strength"}},
+    {"random_walk", {"volume"}},
+    {"rect", {"quad"}},
+    {"rectangle", {"quad"}},
+    {"reflectance", {"base_color", "subsurface_color"}},
+    {"rotate", {"transform"}},
+    {"rotation", {"transform"}},
+    {"samples", {"samples_per_pixel"}},
+    {"scale", {"transform"}},
+    {"scattering", {"sigma_s"}},
+    {"size", {"resolution"}},
+    {"spp", {"samples_per_pixel"}},
+    {"strength", {"intensity", "radiance", "irradiance"}},
+    {"sun", {"directional"}},
+    {"target", {"look_at"}},
+    {"tonemap", {"view"}},
+    {"translate", {"transform"}},
+    {"width", {"resolution"}},
+    {"world", {"surroundings"}},
+};
+
+/// Candidates with this name in another program.
+Names named_otherwise(std::string_view name, std::span<const std::string_view> candidates) {
+  Names found;
+  for (const auto& [word, own] : kOtherWords)
+    for (const std::string_view key : own)
+      if (name == word && std::ranges::find(candidates, key) != candidates.end()) found.emplace_back(key);
+  return found;
+}
+
+/// The one candidate of similar spelling, or none.
+Names nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
+  constexpr std::size_t longest = 64;  // longer names, possibly megabytes, match nothing
+  Names nearest;
+  std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
+  for (const std::string_view candidate : candidates) {
+    if (name.size() > longest || candidate.size() > longest) continue;
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < least && distance < candidate.size()) {
+      least = distance;
+      nearest = {std::string(candidate)};
+    }
+  }
+  return nearest;
+}
+
+/// Candidates ending with this word, `specular_roughness` for `roughness`, unless there are many.
+Names longer_names(std::string_view name, std::span<const std::string_view> candidates) {
+  constexpr std::size_t most = 3;
+  Names found;
+  for (const std::string_view candidate : candidates)
+    if (!name.empty() && candidate.ends_with('_' + std::string(name))) found.emplace_back(candidate);
+  return found.size() <= most ? found : Names{};
+}
+
+Names similar_names(std::string_view name, std::span<const std::string_view> candidates) {
+  for (const auto& look : {named_otherwise, nearest_name, longer_names})
+    if (Names found = look(name, candidates); !found.empty()) return found;
+  return {};
+}
+
+/// Sections occurring once in a scene, so their keys have one path.
+constexpr std::array<std::string_view, 4> kSingleSections{"camera", "film", "settings",
+                                                          "settings.laboratory"};
+
+/// Paths of the keys with this name, or with it in another program.
+Names paths_of(std::string_view key) {
+  Names paths;
+  for (const std::string_view section : kSingleSections) {
+    const std::span<const std::string_view> keys = section_keys(section);
+    const bool is_there = std::ranges::find(keys, key) != keys.end();
+    for (const std::string& name : is_there ? Names{std::string(key)} : named_otherwise(key, keys))
+      paths.push_back(std::string(section) + '.' + name);
+  }
+  return paths;
+}
+
+/// The path of a key of similar spelling, or none.
+Names nearest_path(std::string_view key) {
+  for (const std::string_view section : kSingleSections)
+    for (const std::string& name : nearest_name(key, section_keys(section)))
+      return {std::string(section) + '.' + name};
+  return {};
+}
+
+/// Paths of keys of media and shapes matching a name at the top level.
+Names paths_in_lists(std::string_view key) {
+  for (const auto& [section, list] :
+       {std::pair("medium", "media.NAME."), std::pair("shape", "shapes.NAME.")}) {
+    const std::span<const std::string_view> keys = section_keys(section);
+    const bool is_there = std::ranges::find(keys, key) != keys.end();
+    Names found = is_there ? Names{std::string(key)} : similar_names(key, keys);
+    for (std::string& name : found) name.insert(0, list);
+    if (!found.empty()) return found;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates) {
+  return suggestion(similar_names(name, candidates));
+}
+
+std::string did_you_mean_key(std::string_view name, std::string_view section) {
+  const std::span<const std::string_view> keys = section_keys(section);
+  // Keys of shapes, lights and media have similar names, but are not confused with others.
+  const bool may_be_elsewhere =
+      section == "scene" || std::ranges::find(kSingleSections, section) != kSingleSections.end();
+  if (!may_be_elsewhere) return did_you_mean(name, keys);
+  for (const Names& found : {paths_of(name), similar_names(name, keys), nearest_path(name)})
+    if (!found.empty()) return suggestion(found);
+  return section == "scene" ? suggestion(paths_in_lists(name)) : "";
+}
+
+std::vector<std::string> similar_key_paths(std::string_view name) {
+  const Names paths = paths_of(name);
+  return paths.empty() ? nearest_path(name) : paths;
+}
+
+std::string did_you_mean_file(const std::string& path) {
+  constexpr std::size_t most = 10000;  // maximum files of a searched folder
+  const std::filesystem::path given(path), folder = given.parent_path();
+  std::vector<std::string> names;
+  std::error_code failure;
+  std::filesystem::directory_iterator file(folder.empty() ? "." : folder, failure);
+  for (; !failure && file != std::filesystem::directory_iterator(); file.increment(failure)) {
+    if (names.size() == most) return {};
+    names.push_back(file->path().filename().string());
+  }
+  std::ranges::sort(names);  // folders list their files in no order
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const Names near = nearest_name(given.filename().string(), views);
+  // The example scenes have a script that fetches their assets.
+  const std::filesystem::path script = folder.parent_path() / "gallery";
+  if (near.empty() && folder.filename() == "assets" && std::filesystem::is_regular_file(script, failure))
+    return " (" + printable(script.string()) + " downloads the assets of these scenes)";
+  return near.empty() ? "" : suggestion({(folder / near.front()).string()});
+}
+
+}  // namespace opaline
