@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "exitance/evaluate.h"
 #include "exitance/query_order.h"
 #include "exitance/simd/lane_kernels.h"
-#include "exitance/evaluate.h"
 
 namespace opaline {
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/random.h"
 #include "geometry/cut_polygons.h"
 #include "geometry/topology.h"
-#include "core/random.h"
 
 namespace opaline {
 namespace {
