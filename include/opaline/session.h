@@ -27,14 +27,14 @@ struct World;
 struct RenderResult {
   Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2
                 ///< sr)
-  std::vector<std::uint8_t> translucent;  ///< a pixel each: 1 where more than half of what it shows is so
-  std::size_t queries = 0;                ///< points at which exitance was evaluated
-  std::size_t non_finite = 0;  ///< pixels whose radiance is not finite; 0 unless something is broken
+  std::vector<std::uint8_t> translucent;  ///< per pixel: 1 if most of its covered part is translucent
+  std::size_t queries = 0;                ///< points with evaluated exitance
+  std::size_t non_finite = 0;             ///< pixels of non-finite radiance; 0 unless something is broken
 };
 
-/// Mean over the lit pixels of what the `error` layer expects of |error| / max(diffuse, 1e-3 of its p99), the
+/// Mean over the lit pixels of the estimated |error| / max(diffuse, 1e-3 of its p99) from the `error` layer,
 /// worst channel; 0 without that layer.
-/// in    counted: which pixels are, as RenderResult::translucent; empty, or none of them: all
+/// in    counted: mask of pixels as in RenderResult::translucent; empty or all 0: all pixels
 /// out   within a factor 2 of the measured mean in most scenes at most settings (bench_error_estimate)
 double estimated_relative_error(const Image& image, std::span<const std::uint8_t> counted = {});
 

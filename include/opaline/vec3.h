@@ -93,7 +93,7 @@ constexpr void widen(Vec3<T>& low, Vec3<T>& high, const Vec3<T>& p) {
   high = component_max(high, p);
 }
 
-/// True if none of the three is infinite or not a number.
+/// True if all components are finite.
 template <class T>
 bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);

@@ -4,9 +4,9 @@
 
 namespace opaline {
 
-/// Layers that depend on the method.
+/// Layers depending on the method.
 struct MethodLayers {
-  bool variance = false;  ///< variance of the mean, in place of the irradiance
+  bool variance = false;  ///< variance of the mean, instead of the irradiance
   bool error = false;     ///< estimated standard error
 };
 
