@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Error of an image against a reference: relative errors, their statistics, an estimate from two halves, and LDR-FLIP.
+// Error of an image against a reference: relative errors, their statistics, an estimate from two halves, and
+// LDR-FLIP.
 #pragma once
 
 #include <cstddef>

@@ -86,7 +86,7 @@ constexpr Vec3<T> component_max(const Vec3<T>& a, const Vec3<T>& b) {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
-/// Makes the box from low to high hold p.
+/// Extends the box from low to high to contain p.
 template <class T>
 constexpr void widen(Vec3<T>& low, Vec3<T>& high, const Vec3<T>& p) {
   low = component_min(low, p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sums of a direct rendering and of random walks, from one run to the next.
+// Sums of a direct rendering and of random walks, stored between runs.
 #pragma once
 
 #include <chrono>

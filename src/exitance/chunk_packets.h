@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A chunk of neighbouring queries as packets of lanes, and the sums over single samples at a packet.
+// A chunk of neighbouring queries as packets of lanes, and sums over samples at a packet.
 #pragma once
 
 #include <cstdint>

@@ -79,9 +79,8 @@ std::array<double, SplitKernel::kBorderRows> border_distances() {
 }
 
 /// Table SplitKernel::border for a profile split at h: the remaining fraction of the near field beside the
-/// straight edge of a half plane. Each row is for the edge that leaves the row's fraction of the area, with
-/// the samples' weight. Numerical,
-/// error below 1e-3.
+/// straight edge of a half plane. Each row is for the edge leaving the row's fraction of the area, with the
+/// samples' weight. Numerical, error below 1e-3.
 std::array<std::array<float, 3>, SplitKernel::kBorderRows> border_shares(const DiffuseProfile& profile,
                                                                          double h) {
   static const std::array<double, SplitKernel::kBorderRows> distances = border_distances();  // takes 5 ms

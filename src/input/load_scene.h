@@ -22,7 +22,7 @@ std::string read_scene_text(const std::string& path);
 std::string merged_scene(std::string_view text, const std::string& file,
                          std::span<const std::string> overrides, std::optional<int> frame = {});
 
-/// The same as a person would edit the file: what no override changes stays as it is written, comments included
+/// The same with minimal edits of the text: unchanged values and all comments keep their spelling
 /// (src/input/edited_text.h).
 /// error as merged_scene
 std::string edited_scene(std::string_view text, const std::string& file,

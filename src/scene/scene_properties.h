@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Properties that follow from the records of a scene.
+// Properties derived from the records of a scene.
 #pragma once
 
 #include <vector>

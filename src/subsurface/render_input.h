@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that an image depends on.
+// All inputs of an image.
 #pragma once
 
 #include <memory>

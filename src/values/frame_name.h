@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of files that differ from frame to frame.
+// File names with a frame number.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The CSV of a benchmark read back.
+// Reader of a benchmark's CSV.
 #pragma once
 
 #include <algorithm>

@@ -21,9 +21,9 @@
 namespace opaline {
 namespace {
 
-/// Adds this exitance at the shader's points. Beside shadow edges, an explicitly requested cache leaves it to
-/// the points, to meet its tolerance; an automatic one, made for speed, stores the estimate of a few shadow
-/// rays.
+/// Adds the exitance depending on the irradiance at the shader's points themselves. Beside shadow edges, an
+/// explicitly requested cache leaves it to the points, to meet its tolerance; an automatic one, made for speed,
+/// stores the estimate of a few shadow rays.
 class OwnLight {
  public:
   /// Both must outlive the object.
