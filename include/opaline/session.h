@@ -45,8 +45,8 @@ double estimated_relative_error(const Image& image, std::span<const std::uint8_t
 ///   camera, film                      camera rays and their hits; lookups in a surface cache. Other edits
 ///                                     trace these rays again, too, unless hold_view is on
 ///   a light's colour or power         sums over lights, octrees; no ray from a sample
-///   a medium                          evaluation; samples are reused while they are dense enough, and at most
-///                                     twice as dense (in spacing) as required
+///   a medium                          evaluation; samples are reused while they are dense enough, and at
+///                                     most twice as dense (in spacing) as required
 ///   eta                               transmitted irradiance, octrees, evaluation
 ///   a light moved, added or removed   contribution of that light, octrees, evaluation
 ///   any of many lights (ManyLights)   contribution of all of them, also after a change of colour; octrees,

@@ -22,8 +22,8 @@ namespace opaline {
 namespace {
 
 /// Adds the exitance depending on the irradiance at the shader's points themselves. Beside shadow edges, an
-/// explicitly requested cache leaves it to the points, to meet its tolerance; an automatic one, made for speed,
-/// stores the estimate of a few shadow rays.
+/// explicitly requested cache leaves it to the points, to meet its tolerance; an automatic one, made for
+/// speed, stores the estimate of a few shadow rays.
 class OwnLight {
  public:
   /// Both must outlive the object.
