@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The library: a Scene, a Session that renders it, images and their files, comparison of images.
+// All public headers: scenes, sessions, images and their files, comparison of images.
 #pragma once
 
 #include "opaline/compare.h"

@@ -26,9 +26,9 @@ namespace opaline {
 
 /// Where a record of a scene was written.
 struct SourcePlace {
-  std::string file;          ///< the scene file, or "--set path=value"; empty: made by a program
+  std::string file;          ///< the scene file, or "--set path=value"; empty: generated
   int line = 0, column = 0;  ///< as in Error
-  /// Where a thing is written is no part of what it is: scenes that differ in blanks alone are equal.
+  /// Always equal: scenes differing in layout alone are equal.
   friend bool operator==(const SourcePlace&, const SourcePlace&) { return true; }
 };
 
@@ -370,22 +370,20 @@ struct Scene {
 
 // ---- loading -------------------------------------------------------------------------------------------
 
-/// Reads and checks a scene file, or an asset (GLB, glTF, OBJ) as what import_asset makes of it; lengths are converted to mm by its mm_per_unit.
+/// Reads and checks a scene file, or an asset (GLB, glTF, OBJ) converted by import_asset; lengths are
+/// converted to mm by its mm_per_unit.
 /// in    overrides: "media.marble.eta=1.4": a path of keys (array elements by index or by "name") and a JSON
-/// value
-///       (a value that is not JSON is taken as a string), applied before checking
-/// error Error{bad_input} with file, line and column, what was expected, what was found, and the nearest
-/// valid
+///       value (other texts are strings), applied before checking; frame: of keyed values and mesh sequences
+/// error Error{bad_input} with file, line and column, the expected and the given value, and the nearest valid
 ///       name: no such file, broken JSON, unknown or duplicate key, wrong type, value out of range
-/// frame: which one, of values and mesh files that change.
 Scene load_scene(const std::string& path, std::span<const std::string> overrides = {}, int frame = 1);
 
-/// The same from text; `file` stands in messages and its folder in front of relative mesh paths.
+/// The same from text; `file` names it in messages, and its folder is the base of relative mesh paths.
 Scene parse_scene(std::string_view text, const std::string& file, std::span<const std::string> overrides = {},
                   int frame = 1);
 
-/// A medium by itself: a JSON object such as a member of a scene's `media`; its name is "medium".
-/// in    file: what messages call the text
+/// A single medium: a JSON object as in a scene's `media`; its name is "medium".
+/// in    file: name of the text in messages
 /// error as parse_scene
 Medium parse_medium(std::string_view text, const std::string& file);
 

@@ -13,7 +13,7 @@
 
 namespace opaline {
 
-// Records of the program itself (session_records.h).
+// Internal records, defined by the headers in session/session_records.h.
 class BouncedPlaces;
 class RayScene;
 class StageCache;
@@ -27,45 +27,46 @@ struct World;
 struct RenderResult {
   Image image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance; linear Rec.709, radiance W/(mm^2
                 ///< sr)
-  std::vector<std::uint8_t> translucent;  ///< a pixel each: 1 where more than half of what it shows is so
-  std::size_t queries = 0;                ///< points at which exitance was evaluated
-  std::size_t non_finite = 0;  ///< pixels whose radiance is not finite; 0 unless something is broken
+  std::vector<std::uint8_t> translucent;  ///< per pixel: 1 if most of its covered part is translucent
+  std::size_t queries = 0;                ///< points with evaluated exitance
+  std::size_t non_finite = 0;             ///< pixels of non-finite radiance; 0 unless something is broken
 };
 
-/// Mean over the lit pixels of what the `error` layer expects of |error| / max(diffuse, 1e-3 of its p99), the
+/// Mean over the lit pixels of the estimated |error| / max(diffuse, 1e-3 of its p99) from the `error` layer,
 /// worst channel; 0 without that layer.
-/// in    counted: which pixels are, as RenderResult::translucent; empty, or none of them: all
+/// in    counted: mask of pixels as in RenderResult::translucent; empty or all 0: all pixels
 /// out   within a factor 2 of the measured mean in most scenes at most settings (bench_error_estimate)
 double estimated_relative_error(const Image& image, std::span<const std::uint8_t> counted = {});
 
-/// Caches the stage results of the last scene, each with the key of its inputs. The next scene reuses results with
-/// equal keys, looks up the others in the disk cache, and computes the rest:
+/// Caches the stage results of the last scene, each with the key of its inputs. The next scene reuses results
+/// with equal keys, looks up the others in the disk cache, and computes the rest:
 ///
-///   edit                                computed again
-///   camera, film                        camera rays and their hits; lookups in a surface cache. Other edits trace
-///                                       these rays again, too, unless hold_view is on
-///   a light's colour or power           sums over lights, octrees; no ray from a sample
-///   a medium                            evaluation; samples are reused while they are dense enough, and at most
-///                                       twice as dense (in spacing) as required
-///   eta                                 transmitted irradiance, octrees, evaluation
-///   a light moved, added or removed     contribution of that light, octrees, evaluation
-///   any of many lights (ManyLights)     contribution of all of them, also after a change of colour; octrees, evaluation
-///   an object moved as a whole          no file is read; its samples move with it; its irradiance, and that of others
-///                                       within the old or new shadow of its bounding sphere
-///   a mesh bent, the same triangles     the mesh is read, not checked; samples and their cells move with their
-///                                       triangles (carry_samples); all its other results are computed again.
-///                                       Samples are placed again if carrying would give more than both
-///                                       settings.max_samples and twice their first number, or, if that number
-///                                       was set or limited by max_samples, less than a sixteenth of it
-///   anything else                       the dependent stages
+///   edit                              computed again
+///   camera, film                      camera rays and their hits; lookups in a surface cache. Other edits
+///                                     trace these rays again, too, unless hold_view is on
+///   a light's colour or power         sums over lights, octrees; no ray from a sample
+///   a medium                          evaluation; samples are reused while they are dense enough, and at
+///                                     most twice as dense (in spacing) as required
+///   eta                               transmitted irradiance, octrees, evaluation
+///   a light moved, added or removed   contribution of that light, octrees, evaluation
+///   any of many lights (ManyLights)   contribution of all of them, also after a change of colour; octrees,
+///                                     evaluation
+///   an object moved as a whole        no file is read; its samples move with it; its irradiance, and that of
+///                                     others within the old or new shadow of its bounding sphere
+///   a mesh bent, the same triangles   the mesh is read, not checked; samples and their cells move with their
+///                                     triangles (carry_samples); all its other results are computed again.
+///                                     Samples are placed again if carrying would give more than both
+///                                     settings.max_samples and twice their first number, or, if that number
+///                                     was set or limited by max_samples, less than a sixteenth of it
+///   anything else                     the dependent stages
 ///
-/// Random walks (Method::volume) are stored by light if lights are few: edits of the camera or of colours trace none,
-/// and other edits trace only those of the affected lights.
+/// Random walks (Method::volume) are stored by light if lights are few: edits of the camera or of colours
+/// trace none, and other edits trace only those of the affected lights.
 ///
-/// An image is bit-identical to that of a new session, with two exceptions: random walks traced for a smaller error
-/// (walks are never removed), and scenes with samples that moved with the surface or stayed denser than required. Such
-/// samples were placed on the surface of the last complete sampling. The image depends on that surface and on the current
-/// scene, not on the edits in between.
+/// An image is bit-identical to that of a new session, with two exceptions: random walks traced for a smaller
+/// error (walks are never removed), and scenes with samples that moved with the surface or stayed denser than
+/// required. Such samples were placed on the surface of the last complete sampling. The image depends on that
+/// surface and on the current scene, not on the edits in between.
 class Session {
  public:
   /// cache: disk cache to look up and store results; null: none. Must outlive the session.
@@ -119,11 +120,12 @@ class Session {
   /// Renders the scene; prepares it first.
   RenderResult render(Monitor* monitor = nullptr);
 
-  /// Radiant exitance at points of a body's surface; prepares the scene first. Where the mean free path is below the spacing
-  /// of the samples, `render` traces shadow rays for the irradiance at its points; this interpolates it.
+  /// Radiant exitance at points of a body's surface; prepares the scene first. For mean free paths below the
+  /// sample spacing, `render` traces shadow rays for the irradiance at its points; this function interpolates
+  /// it.
   /// in    body: index of a translucent shape or group, in the order of the scene; points: world space, mm;
-  ///       normals: unit, outward, one a point
-  /// out   M_o in W/mm^2, one a point
+  ///       normals: unit, outward, one per point
+  /// out   M_o in W/mm^2, one per point
   /// error as prepare; Error{bad_input}: no such body, or a method without bodies
   std::vector<RgbF> radiant_exitance(std::size_t body, std::span<const Vec3d> points,
                                      std::span<const Vec3f> normals);
@@ -133,7 +135,7 @@ class Session {
   /// Decisions on reused and recomputed stages, a line each.
   const std::vector<std::string>& decisions() const;
 
-  // For the program and its tests.
+  // Internal results, for the program and its tests.
 
   /// Meshes of the scene around one origin.
   const World& world() const;

@@ -86,14 +86,14 @@ constexpr Vec3<T> component_max(const Vec3<T>& a, const Vec3<T>& b) {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
-/// Makes the box from low to high hold p.
+/// Extends the box from low to high to contain p.
 template <class T>
 constexpr void widen(Vec3<T>& low, Vec3<T>& high, const Vec3<T>& p) {
   low = component_min(low, p);
   high = component_max(high, p);
 }
 
-/// True if none of the three is infinite or not a number.
+/// True if all components are finite.
 template <class T>
 bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);

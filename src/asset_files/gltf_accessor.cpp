@@ -151,7 +151,7 @@ class AccessorReader {
   std::size_t size_ = 0;  // size of a component, bytes
 };
 
-/// make(numbers of an element): the element.
+/// make(numbers) returns an element, from its numbers.
 template <std::size_t kNumbers, class Make>
 auto read_elements(const GltfModel& gltf, std::uint32_t index, std::string_view type, const Make& make) {
   const std::vector<double> numbers = AccessorReader(gltf, index).run(type, kNumbers);

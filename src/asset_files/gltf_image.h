@@ -17,10 +17,10 @@ struct GltfModel;
 class GltfRecord;
 struct NamedFile;
 
-/// Between the asset's name and the index.
+/// Separates the asset's name and the index.
 inline constexpr std::string_view kGltfImageWord = "#image/";
 
-/// The file of an image; empty where its bytes are in the asset.
+/// File of an image; empty if the image is embedded in the asset.
 NamedFile gltf_image_file(const GltfModel& gltf, const GltfRecord& image);
 /// error Error{bad_input} naming the asset and the record
 GltfImage gltf_image(const GltfModel& gltf, std::size_t index);

@@ -54,7 +54,7 @@ class GltfRecord {
 
  private:
   const Json* find(const char* key) const;
-  /// read(value, its place): a value of the list.
+  /// read(value, position) converts a value of the list.
   template <class Read>
   auto list_of(const char* key, const Read& read) const;
   double number_of(const Json& value, const std::string& key) const;

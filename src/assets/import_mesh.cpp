@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PLY, STL and OFF: one opaque shape of the file's vertex colours, or grey.
+// PLY, STL and OFF: one opaque shape with the file's vertex colours, or grey.
 #include <cctype>
 #include <filesystem>
 

@@ -19,15 +19,15 @@ namespace opaline {
 
 /// Statistics of repeated measurements.
 struct Spread {
-  std::size_t runs = 0;  ///< 0: nothing was measured, and the rest says nothing
+  std::size_t runs = 0;  ///< 0: nothing was measured, other members are meaningless
   double median = 0;     ///< median of an even number: the mean of the two in the middle
   double low = 0, high = 0;
 };
 
-/// Over the values that are finite: the others were not measured (a rate without time).
+/// Statistics of the finite values; others are missing measurements, such as a rate without time.
 Spread spread_of(std::vector<double> values);
 
-/// The stages of a rendering that are told apart.
+/// Distinguished stages of a rendering.
 inline constexpr std::array<std::string_view, 11> kBenchStages{
     "loading", "rays",    "sampling", "irradiance", "diffusion", "random walks",
     "octree",  "bounces", "exitance", "shading",    "writing"};

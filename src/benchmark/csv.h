@@ -20,7 +20,7 @@ struct CsvTable {
 
 std::string to_csv(const CsvTable& table);
 
-/// Raised whenever a column changes its name, unit or meaning, or goes.
+/// Increases with each change of a column's name, unit or meaning, and with each removed column.
 inline constexpr int kBenchSchema = 2;
 
 /// The schema is the first note. Empty cells were not measured; a failed rung has the reason in `failure`.

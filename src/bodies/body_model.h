@@ -11,10 +11,10 @@ namespace opaline {
 
 struct BodyModel {
   ChosenProfile profile;
-  bool is_chosen = false;  ///< and not named by the scene
+  bool is_chosen = false;  ///< false: named by the scene
   std::string reason;
-  /// Rms of the radiant exitance against random walks over the mean, of the worst channel; none: unknown, of a profile
-  /// that the scene names, and of a mesh that is open.
+  /// Rms error of the radiant exitance against random walks over the mean, worst channel; none: unknown, for
+  /// profiles named by the scene and for open meshes.
   std::optional<double> expected_error;
   std::optional<double> expected_error_of_diffusion;  ///< the same of Method::volume_diffusion
 };

@@ -41,7 +41,7 @@ struct CompareReport {
   std::vector<ErrorStatistics> errors;      ///< a channel each, then over all; none with halves
   std::vector<HalvesEstimate> halves;       ///< a channel each, then over all; none without halves
   std::optional<FlipReport> flip;           ///< FLIP of R, G, B against one reference
-  std::vector<NonFiniteReport> not_finite;  ///< the picture, then its references
+  std::vector<NonFiniteReport> not_finite;  ///< the image, then its references
   std::vector<std::string> failures;        ///< why the comparison failed
 };
 

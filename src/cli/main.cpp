@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only place where exceptions are caught and become exit codes.
+// Catches all exceptions and converts them to exit codes.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -35,20 +35,19 @@ void catch_from_the_start() {
   std::set_terminate(end_by_exception);
 }
 
-// Runs before the libraries' constructors, which allocate, too.
+// Runs before the libraries' constructors, as they allocate.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const before_libraries)() = catch_from_the_start;
 
-/// Call first in main. Gives descriptors 0 to 2 that came closed to /dev/null, so no output file is
-/// opened as one of them and written to by messages; writing to them still fails, as it does to a closed one.
-/// A write beyond the file size limit then fails, too, in place of ending the process with its temporary file
-/// left behind. (An exception that a library lets escape because memory ran out ends the process as it would from main,
-/// with one line and exit code 3, even before main.)
+/// Call first in main. Opens closed descriptors 0 to 2 as /dev/null, so messages never reach an output file
+/// opened under their number; writing to them still fails. Writing beyond the file size limit then fails
+/// instead of ending the process with its temporary file left behind. (An out-of-memory exception escaping a
+/// library ends the process as from main, with one line and exit code 3, even before main.)
 void prepare_process() {
-  // The lowest number that is free is the one that was found closed. For reading only: a result that nobody
-  // can receive is then told from one that was delivered.
+  // open returns the lowest free number, the closed descriptor found. Read-only, so writing fails and an
+  // undeliverable result is detected.
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor)
     if (::fcntl(descriptor, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDONLY) != descriptor)
-      std::_Exit(3);  // no descriptor to say it on
+      std::_Exit(3);  // no descriptor for a message
   std::signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -36,10 +36,10 @@
 namespace opaline {
 namespace {
 
-/// in    more_bytes: beside what the plan tells
-/// error Error{run_failed}: the plan needs more memory than this process can still have; says what takes less
+/// in    more_bytes: in addition to the plan
+/// error Error{run_failed}: the plan exceeds the memory available to this process; suggests smaller settings
 void check_memory(const Scene& scene, const Plan& plan, std::size_t more_bytes) {
-  // The whole picture has to have an address, empty parts of it as well.
+  // The full image needs address space, including empty parts.
   const Rectangle part = rendered_part(scene.film);
   const std::size_t picture = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0) *
                               layer_names(method_of(scene.settings.method).layers()).size() * sizeof(float);

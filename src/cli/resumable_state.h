@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sums of a direct rendering and of random walks, from one run to the next.
+// Sums of a direct rendering and of random walks, stored between runs.
 #pragma once
 
 #include <chrono>
@@ -14,11 +14,11 @@
 
 namespace opaline {
 
-/// Sums kept in the --resume file, if there is one: those of all bodies and lights. Nothing of the camera
-/// or of colours is in them.
+/// Sums of all bodies and lights in the --resume file, if there is one. They do not depend on the camera or
+/// on colours.
 class ResumableWalks {
  public:
-  /// The session walks from the file's sums and to them while this lives.
+  /// Random walks of the session read and update the file's sums during this object's lifetime.
   ResumableWalks(const std::string& path, Session& session) : path_(path), session_(session) {
     if (path_.empty()) return;
     walks_ = read_walks(path_);
@@ -54,7 +54,7 @@ class ResumableWalks {
     return found->second;
   }
 
-  // Another lamp or body may be new in the scene, not all of them.
+  // The scene may have a new light or body, but not only new ones.
   void keep(std::span<const StageKey> keys, const VolumeSums& sums) {
     if (!was_empty_ && !has_found_)
       throw bad_file(path_, "the sums belong to another scene or other settings",

@@ -157,7 +157,7 @@ void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneK
                  std::vector<std::uint32_t>& room) {
   std::size_t samples = 0;
   for (const std::uint32_t leaf : leaves) samples += input.octree.nodes[leaf].count;
-  room.resize(samples * kLanes);  // pairs, at most one a sample and block of lanes
+  room.resize(samples * kLanes);  // pairs, at most one per sample and block of lanes
   auto* wholes = reinterpret_cast<std::uint32_t(*)[2]>(room.data());
   const std::size_t count = kernels.add_leaves(lanes, leaves.data(), leaves.size(), packet, sums, wholes);
   if (!input.kernel.split) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A chunk of neighbouring queries as packets of lanes, and the sums over single samples at a packet.
+// A chunk of neighbouring queries as packets of lanes, and sums over samples at a packet.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct ChunkPackets {
 void guess_exitance(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
                     const ChunkPackets& packets, std::span<RgbF> guesses);
 
-/// Adds the samples of leaves, those of another sheet with their whole kernel. room: scratch
+/// Adds the samples of leaves, those on another sheet with their whole kernel. room: scratch
 void add_samples(const EvaluateInput& input, const LaneInput& lanes, const LaneKernels& kernels,
                  const std::vector<std::uint32_t>& leaves, const Packet& packet, PacketSums& sums,
                  std::vector<std::uint32_t>& room);

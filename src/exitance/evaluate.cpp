@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kBorderRings = 192;
 
-// Radii over h of the rings' borders, dense towards the point, where steep profiles have all of their light.
+// Radii over h of the rings' edges, dense near the point, where steep profiles have most of their mass.
 double ring_radius(int i) {
   return std::pow(double(i) / kBorderRings, 4);
 }
@@ -33,7 +33,7 @@ std::vector<double> ring_shares(const std::vector<double>& within) {
   return shares;
 }
 
-// The part of the rings lying on this side of a straight border at distance t h.
+// Part of the rings on this side of a straight border at distance t h.
 double inside_border(const std::vector<double>& shares, double t) {
   double sum = 0;
   for (int i = 0; i < kBorderRings; ++i) {
@@ -44,7 +44,7 @@ double inside_border(const std::vector<double>& shares, double t) {
   return sum;
 }
 
-// Area shares of the weight (1 - t^2)^2 with which the samples' areas are summed.
+// Fractions of the weight (1 - t^2)^2, used for the sum of the samples' areas.
 std::vector<double> area_shares() {
   std::vector<double> within;
   for (int i = 0; i <= kBorderRings; ++i)
@@ -52,7 +52,7 @@ std::vector<double> area_shares() {
   return ring_shares(within);
 }
 
-// Near shares of 2 pi r R_d (1 - w(r/h)), by parts: steep profiles are bounded only in that form.
+// Near fractions of 2 pi r R_d (1 - w(r/h)), integrated by parts: bounded even for steep profiles.
 std::vector<double> near_shares(const ChannelProfile& profile, double h) {
   std::vector<double> within{0};
   double by_parts = 0;
@@ -64,13 +64,13 @@ std::vector<double> near_shares(const ChannelProfile& profile, double h) {
   return ring_shares(within);
 }
 
-// Over h, for each row the distance at which a border leaves its fraction of the areas on this side.
+// For each row, the distance over h of the border leaving its fraction of the areas.
 std::array<double, SplitKernel::kBorderRows> border_distances() {
   const std::vector<double> area = area_shares();
   std::array<double, SplitKernel::kBorderRows> distances{};
   for (std::size_t row = 0; row < SplitKernel::kBorderRows; ++row) {
     const double wanted = 0.5 + 0.5 * double(row) / (SplitKernel::kBorderRows - 1);
-    double low = 0, high = 1;  // the area grows with the distance of the border
+    double low = 0, high = 1;  // the area increases with the border's distance
     for (int i = 0; i < 20; ++i)
       (inside_border(area, 0.5 * (low + high)) < wanted ? low : high) = 0.5 * (low + high);
     distances[row] = 0.5 * (low + high);
@@ -78,9 +78,9 @@ std::array<double, SplitKernel::kBorderRows> border_distances() {
   return distances;
 }
 
-/// SplitKernel::border for a profile split at h: what is left of the near field beside the straight edge of a half plane.
-/// Each row is for an edge that cuts off as much of the area, weighted as the samples are, as the row stands for.
-/// Numerical, error below 1e-3.
+/// Table SplitKernel::border for a profile split at h: the remaining fraction of the near field beside the
+/// straight edge of a half plane. Each row is for the edge leaving the row's fraction of the area, with the
+/// samples' weight. Numerical, error below 1e-3.
 std::array<std::array<float, 3>, SplitKernel::kBorderRows> border_shares(const DiffuseProfile& profile,
                                                                          double h) {
   static const std::array<double, SplitKernel::kBorderRows> distances = border_distances();  // takes 5 ms
@@ -92,7 +92,7 @@ std::array<std::array<float, 3>, SplitKernel::kBorderRows> border_shares(const D
   return rows;
 }
 
-// A node may stand as one point when it is small from here and wholly outside the near field.
+// True if a node may be one point: small at this distance and entirely outside the near field.
 bool is_far(const OctreeNode& node, const Vec3f& p, __m128 r2, float max_solid_angle, float near2) {
   const __m128 limit = _mm_mul_ps(_mm_set1_ps(max_solid_angle), r2);
   if (_mm_movemask_ps(_mm_cmpgt_ps(_mm_set1_ps(node.flux[3]), limit)) != 0) return false;

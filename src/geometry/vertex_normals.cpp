@@ -15,7 +15,7 @@
 namespace opaline {
 namespace {
 
-/// Sets of triangle corners at one position between which there is no crease. Corner 3 t + k is that of triangle t.
+/// Sets of triangle corners at one position not separated by creases. Corner 3 t + k belongs to triangle t.
 class Fans {
  public:
   Fans(const Mesh& mesh, const Smoothing& smoothing)
@@ -73,10 +73,10 @@ class Fans {
   std::vector<Vec3d> normals_;  // normals of the triangles
 };
 
-/// Gives each vertex without a normal the average over the triangles around it up to the creases, weighted by their
-/// angle there; a vertex on a crease becomes one for each side, the new ones behind all others. A crease is an edge
-/// between triangles of different smoothing groups, or of none, or that bends by more than the crease angle.
-/// in    mesh.normals: one a vertex; missing: which of them are to be found; every triangle has an area
+/// Gives each vertex without a normal the average over the triangles around it up to the creases, weighted by
+/// angle. A vertex on a crease becomes one vertex per side, the new ones after all others. A crease is an
+/// edge between triangles of different smoothing groups or of none, or with a bend above the crease angle.
+/// in    mesh.normals: one per vertex; missing: flags of the vertices to complete; every triangle has an area
 void average_between_creases(Mesh& mesh, const std::vector<bool>& missing, const Smoothing& smoothing) {
   constexpr std::uint32_t none = ~0u;
   Fans fans(mesh, smoothing);

@@ -22,7 +22,7 @@ double twice_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return length(cross(b - a, c - a));
 }
 
-/// Area that rounding adds to or removes from all triangles, over their sum.
+/// Absolute change of the triangles' area by rounding, over their sum.
 double area_lost(const Mesh& mesh) {
   double sum = 0, lost = 0;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -35,9 +35,9 @@ double area_lost(const Mesh& mesh) {
 }
 
 /// in    mesh: of a world, in its space; diagonal: World::diagonal; unit: World::unit
-/// error Error{bad_input} with the name and the bound: the mesh is less than 2^-16 as large as it is far from
-///       the middle of the world, less than 2^-30 as large as the world, or so thin that its area changes by
-///       more than a tenth where its vertices are rounded to floats
+/// error Error{bad_input} with the name and the bound: the mesh is smaller than 2^-16 of its distance from
+///       the middle of the world or 2^-30 of the world's size, or so thin that rounding its vertices to
+///       floats changes its area by more than a tenth
 void check_precision(const Mesh& mesh, const std::string& name, double diagonal, double unit) {
   const Bounds box = bounds(mesh);
   const double side = max_component(box.high - box.low);

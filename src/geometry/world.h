@@ -37,11 +37,11 @@ inline Vec3d out_of_world(const World& world, const Vec3d& p) {
   return p * world.unit + world.origin;
 }
 
-/// The smallest box around these meshes, units; of none low > high.
+/// Bounding box of these meshes, world units; low > high if there are none.
 Bounds bounds(const World& world, std::span<const std::uint32_t> meshes);
-/// True if the boxes of two of them meet.
+/// True if the bounding boxes of any two meshes intersect.
 bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes);
-/// Their area, square units.
+/// Total area of the meshes, square world units.
 double area_of(const World& world, std::span<const std::uint32_t> meshes);
 
 /// Meshes of all shapes.

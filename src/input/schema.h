@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The keys of a scene file: one row a key. The reader takes its checks from the rows, `--set` and error
-// messages their names, the picture's metadata its values, scenes/README.md and docs/laboratory.md their tables, and editors
-// their JSON Schema.
+// Keys of a scene file, one row each: source of the reader's checks, the names in `--set` and error messages,
+// the image's metadata, the tables in scenes/README.md and docs/laboratory.md, and the editors' JSON Schema.
 #pragma once
 
 #include <span>
@@ -16,17 +15,17 @@ namespace opaline {
 
 /// All rows, in the order of scenes/README.md.
 std::span<const KeyInfo> schema();
-/// The keys, of whatever section, that name files: whoever may set one can have any file opened.
+/// Keys of all sections naming files: setting one opens a file.
 std::span<const std::string_view> file_keys();
 /// Path of a key of `settings` or of `settings.laboratory`: "settings.laboratory.near_field".
 std::string settings_path(std::string_view key);
-/// The row as scenes/README.md has it.
+/// Table row for scenes/README.md.
 std::string documentation(const KeyInfo& info);
 
 /// The rows as a JSON Schema of scene files (draft-07).
 std::string json_schema();
 
-/// The settings and the film that are in use, keys with a value only: a JSON object.
+/// Settings and film in use as a JSON object, omitting keys without a value.
 std::string settings_json(const Scene& scene);
 
 }  // namespace opaline

@@ -155,7 +155,7 @@ std::span<const Member<Film>> film_members() {
        read_resolution, resolution_json},
       {row("film", "crop", list, "pixels", {0, kLargestSide}, "everything",
            "renders only the pixels [x0, y0, x1, y1], counted from the top left, without x1 and y1"),
-       read_crop, crop_json},  // after the resolution, which it lies within
+       read_crop, crop_json},  // after the resolution, as it must lie within
       member<&Film::samples_per_pixel>("samples_per_pixel", whole_number, "", {1, 65536}, "",
                                        "camera rays per pixel"),
       member<&Film::filter>("filter", choice, "", kFiniteNumber, "",

@@ -16,8 +16,8 @@
 
 namespace opaline {
 
-/// Reorders what each light sends to some points.
-/// in    before: index of each light in `lights`; none: it must be traced
+/// Reorders the cached transfers of lights to points after a change of the lights.
+/// in    before: index of each light's transfers in `lights`; none: must be traced
 void set_held_lights(std::vector<PointTransfers>& lights, std::span<const std::optional<std::size_t>> before);
 
 /// Points of a surface on a lattice: intersections with lines parallel to the axes, one line per square of a

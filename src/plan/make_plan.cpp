@@ -65,7 +65,7 @@ void check_reach(const Scene& scene, const World& world) {
   }
 }
 
-/// error where a method knows no light between things
+/// error where a method has no light between shapes
 void check_bounces(const Scene& scene) {
   const Method method = scene.settings.method;
   if (bounces_of(scene) == 0 || method_of(method).supports_bounces()) return;

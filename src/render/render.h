@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From everything to a picture.
+// Rendering of an image from a prepared scene.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace opaline {
 
-/// Pixels [x0, x1) x [y0, y1) of the whole picture.
+/// Pixels [x0, x1) x [y0, y1) of the full image.
 struct Rectangle {
   int x0, y0, x1, y1;
 };
@@ -22,19 +22,19 @@ struct Rectangle {
 /// Rendered rectangle: the crop of the film, or the whole film.
 Rectangle rendered_part(const Film& film);
 
-/// A larger view is not held, bytes.
+/// Maximum size of a cached view, bytes.
 inline constexpr std::size_t kMostHeldBytes = std::size_t(256) << 20;
-inline constexpr std::size_t kMostCoatBytes = std::size_t(256) << 20;  ///< besides, of HeldView::Coat
+inline constexpr std::size_t kMostCoatBytes = std::size_t(256) << 20;  ///< in addition, for HeldView::Coat
 
-/// Radiance seen by the camera.
-/// `hierarchical`: translucent surfaces send out M_o Ft(omega_o) / (pi (1 - F_bar)) with M_o from the trees;
+/// Radiance towards the camera.
+/// `hierarchical`: translucent surfaces emit M_o Ft(omega_o) / (pi (1 - F_bar)) with M_o from the trees;
 /// `lambert`: the same with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing
-/// mean free path and the floor of all costs. Both add the mirror image of area lights and surroundings,
-/// weight F. Opaque surfaces are Lambertian.
-/// Lights light all of them, and with settings.bounces surfaces light each other, once.
+/// mean free path and the cheapest method. Both add the specular reflection of area lights and environments,
+/// weight F. Opaque surfaces are Lambertian. Lights illuminate all surfaces; with settings.bounces, surfaces
+/// illuminate each other once.
 RenderResult render(const RenderInput& input);
 
-/// For RenderInput::bounced, with what else the input has.
+/// For RenderInput::bounced, given the other inputs.
 std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input);
 
 }  // namespace opaline

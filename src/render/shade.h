@@ -19,7 +19,7 @@ class BouncedLight;
 
 class Shader {
  public:
-  /// sources: fields of meshes without a body; must outlive it
+  /// sources: of meshes without a body. All arguments must outlive the object.
   explicit Shader(const RenderInput& input, std::span<const FieldSource> sources = {});
 
   /// Shades a batch of traced camera rays, one PixelSample per ray; returns the number of exitance queries.

@@ -18,16 +18,16 @@
 
 namespace opaline {
 
-/// A place on the surface that has no accepted sample within the radius yet.
+/// Candidate point of the surface, with no accepted sample within the radius yet.
 struct Candidate {
   Vec3f position;
   SampleGrid::Place place;  // its triangle is an index into the TriangleList
-  std::uint32_t order;      // random: the order in which a cell's candidates are tried
+  std::uint32_t order;      // random: order of the candidates within a cell
 };
 
 /// A candidate in its cell. Sorted by phase (the cell's parities), cell and random order.
 struct CandidateEntry {
-  std::uint64_t cell;  // its key, the phase moved from the lowest bits to the highest
+  std::uint64_t cell;  // its key, with the phase moved from the lowest bits to the highest
   std::uint32_t order, candidate;
   std::uint64_t phase() const { return cell >> 61; }
   std::uint64_t key() const { return cell << 3 | phase(); }
@@ -61,8 +61,8 @@ class Candidates {
   std::vector<std::vector<Candidate>> chunks_;
 };
 
-/// Dart throwing in phase groups (Wei 2008) over a hash grid: rounds of candidates, of which those are
-/// accepted that no sample of their sheet is nearer to than the radius, the same ones whatever the threads.
+/// Dart throwing in phase groups (Wei 2008) over a hash grid: rounds of candidates, accepted if no sample of
+/// their sheet is within the radius; independent of threads.
 class PoissonDisk {
  public:
   PoissonDisk(const TriangleList& triangles, const Bounds& box, float radius)

@@ -23,7 +23,7 @@ constexpr double kRadiusPerSpacing = 0.7195;
 // 3 % of the number.
 constexpr double kEnough = 1.1;
 
-// The samples before they are put in order.
+// Unsorted samples.
 struct PlacedSamples {
   std::vector<SampleGrid::Place> places;
   std::vector<SurfaceShare> shares;
@@ -33,7 +33,7 @@ struct PlacedSamples {
 PlacedSamples place_samples(const SamplingInput& input, const TriangleList& triangles, float radius,
                             bool want_pieces) {
   PoissonDisk poisson(triangles, bounds(input.world, input.meshes), radius);
-  // Where the surface is thinner than the radius no dart meets another one, and each round adds as many.
+  // Where the surface is thinner than the radius, darts never meet, and each round adds as many samples.
   const auto enough = std::size_t(kEnough * double(input.count));
   for (int round = 0; round < input.candidate_rounds && poisson.grid().size() <= enough; ++round)
     poisson.throw_darts(input.count, hash_bits(input.seed, std::uint64_t(round)), input.monitor);

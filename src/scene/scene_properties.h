@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Properties that follow from the records of a scene.
+// Properties derived from the records of a scene.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ inline bool is_partly_opaque(const Medium& medium) {
   return medium.subsurface_weight < 1 || medium.weight_texture;
 }
 
-/// True if textures vary the colour, or the colour or radius, of the medium inside its bodies. Methods that use a radial
+/// True if textures vary the medium's colour, or colour or radius, inside its bodies. Methods with a radial
 /// profile ignore this (SubsurfaceMethod::follows_textures_inside).
 inline bool has_color_inside(const Medium& medium) {
   return medium.texture_mix == TextureMix::medium && medium.tint_texture;
@@ -32,14 +32,14 @@ inline NormalizedDiffusionFit profile_fit(const Medium& medium) {
   return medium.profile ? medium.fit : medium.chosen.fit;
 }
 
-/// How often light goes from one surface to another: Settings::bounces, or 1 where one thing that sends light back can
-/// light another and the method knows of it. A body does not light itself unless it is asked for.
+/// Number of bounces between surfaces: Settings::bounces, or by default 1 if one reflecting shape can
+/// illuminate another and the method supports it. A body illuminates itself only on request.
 int bounces_of(const Scene& scene);
-/// The textures of a shape and of its medium.
+/// Textures of a shape and of its medium.
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
-/// True if a shape's mesh has to have UVs.
+/// True if a shape's mesh needs UVs.
 bool needs_uvs(const Scene& scene, const Shape& shape);
-/// Grain of a shape whose boundary is rough and has one; else null.
+/// Anisotropy of a shape's rough boundary; null for smooth or isotropic ones.
 const Grain* grain_of(const Scene& scene, const Shape& shape);
 
 /// Surface coordinates read with a mesh: UVs, and tangents if the file has them.

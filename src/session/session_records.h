@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session with the records that it gives access to, for the program and its tests.
+// A session and the definitions of its internal records, for the program and its tests.
 #pragma once
 
 #include "bodies/body.h"

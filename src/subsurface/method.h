@@ -104,10 +104,10 @@ class SubsurfaceMethod {
 
 const SubsurfaceMethod& method_of(Method method);
 
-/// Radiant exitance at points of a body's surface, for callers with points of their own. Where the mean free path is below
-/// the spacing of the samples, `render` traces shadow rays for the irradiance at its points; this interpolates it.
-/// in    body: prepared; points: world space, mm; normals: unit, outward, one a point
-/// out   M_o in W/mm^2, one a point
+/// Radiant exitance at arbitrary points of a body's surface. For mean free paths below the sample spacing,
+/// `render` traces shadow rays for the irradiance at its points; this function interpolates it.
+/// in    body: prepared; points: world space, mm; normals: unit, outward, one per point
+/// out   M_o in W/mm^2, one per point
 std::vector<RgbF> radiant_exitance(const Body& body, const World& world, std::span<const Vec3d> points,
                                    std::span<const Vec3f> normals, const Settings& settings);
 

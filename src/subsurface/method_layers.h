@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layers of an image that depend on the method.
+// Image layers depending on the method.
 #pragma once
 
 namespace opaline {
 
-/// Layers that depend on the method.
+/// Flags of the layers written by a method.
 struct MethodLayers {
-  bool variance = false;  ///< variance of the mean, in place of the irradiance
+  bool variance = false;  ///< variance of the mean, instead of the irradiance
   bool error = false;     ///< estimated standard error
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that an image depends on.
+// All inputs of an image.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Light that surfaces send to what a camera sees, at places of its picture.
+/// Irradiance cache of indirect light in image space.
 class BouncedPlaces;
 
 struct RenderInput {
@@ -21,8 +21,8 @@ struct RenderInput {
   std::span<const Body> groups = {};  ///< bodies from the precompute; not needed by Method::lambert
   Monitor* monitor = nullptr;
   HeldView* view = nullptr;  ///< cached view of an earlier image, or new; at most kMostHeldBytes
-  /// Where light bounces: gathered for this or another view of the same surfaces in the same light; null: for this one,
-  /// by render.
+  /// Indirect light gathered for this or another view of the same surfaces under the same light; null: render
+  /// gathers it.
   std::shared_ptr<const BouncedPlaces> bounced = {};
 };
 

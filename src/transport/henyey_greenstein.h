@@ -11,8 +11,8 @@
 namespace opaline {
 
 /// Cosine of the scattering angle, from u uniform in [0, 1).
-/// from  the usual (1 + g^2 - ((1 - g^2) / (1 + g s))^2) / (2 g), s = 2u - 1, multiplied out: no digits are lost at
-///       g = 0, where it is s
+/// from  the usual (1 + g^2 - ((1 - g^2) / (1 + g s))^2) / (2 g), s = 2u - 1, expanded: no cancellation near
+///       g = 0, its limit s
 inline double sample_henyey_greenstein(double g, double u) {
   const double s = 2 * u - 1, denominator = 1 + g * s;
   const double numerator = s + g * (.5 * (s * s + 3) + g * (s - .5 * g * (1 - s * s)));

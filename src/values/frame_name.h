@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of files that differ from frame to frame.
+// File names with a frame number.
 #pragma once
 
 #include <string>
 
 namespace opaline {
 
-/// The last run of two or more # in a path as the frame's number, with zeros in front to fill them:
-/// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths stay as they are.
+/// Replaces the last run of two or more # in a path by the frame's number, padded with zeros:
+/// "bunny.####.obj", 7 -> "bunny.0007.obj". Other paths are unchanged.
 std::string with_frame(const std::string& path, int frame);
 
 }  // namespace opaline

@@ -47,9 +47,9 @@ struct KeyInfo {
   bool may_be_texture = false;  ///< or an object of the section "texture"
 };
 
-/// The row of a key that exists (schema.cpp).
+/// Row of an existing key (schema.cpp).
 const KeyInfo& key_info(std::string_view section, std::string_view key);
-/// The keys of one section; empty for an unknown section (schema.cpp).
+/// Keys of one section; empty for an unknown section (schema.cpp).
 std::span<const std::string_view> section_keys(std::string_view section);
 
 /// "a, b, c".

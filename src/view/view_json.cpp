@@ -19,7 +19,7 @@
 namespace opaline {
 namespace {
 
-/// As the page calls the types, in the order of ValueType; a file is a text.
+/// Names of the types in the page, in the order of ValueType; a file is a text.
 constexpr std::array<const char*, 13> kTypeNames{
     "number", "whole_number", "length", "point", "triple", "number_or_triple", "color", "flag",
     "choice", "text",         "text",   "list",  "object"};

@@ -14,9 +14,9 @@
 namespace opaline {
 namespace {
 
-/// The fluence around a cell: least squares over its neighbours.
-/// fluence: one a cell
-/// out   a channel: per lattice cell
+/// Gradient of the fluence at a cell: least squares over its neighbours.
+/// fluence: one per cell
+/// out   per channel and lattice cell
 std::array<Vec3f, 3> gradient_at(const DiffusionGrid& grid, std::span<const Channels> fluence,
                                  std::uint32_t i) {
   constexpr float kLeastSquare = .05f;  // along an axis without neighbours there is no slope
@@ -38,9 +38,9 @@ std::array<Vec3f, 3> gradient_at(const DiffusionGrid& grid, std::span<const Chan
   return sums;
 }
 
-/// Adds to the problem's sources what the differences of fluence between cells misstate: across an oblique link the
-/// fluence changes from one centre to the other also along the face, and nothing flows through the face for that.
-/// fluence: one a cell, of the problem as it is
+/// Corrects the sources for oblique links: the fluence difference of two offset centres includes the change
+/// along their face, which causes no flux through it.
+/// fluence: one per cell, of the uncorrected problem
 void add_oblique_flow(DiffusionProblem& problem, std::span<const Channels> fluence) {
   const DiffusionGrid& grid = problem.grid;
   std::vector<std::uint32_t> place(fluence.size(), DiffusionGrid::kNone), cells;
@@ -65,8 +65,8 @@ void add_oblique_flow(DiffusionProblem& problem, std::span<const Channels> fluen
   }
 }
 
-constexpr double kTolerance = 1e-3;  // tolerance of the solver; moves the bunny's picture by .03 %
-constexpr double kRough = 1e-2;      // tolerance of the fluence for the oblique flow
+constexpr double kTolerance = 1e-3;  // tolerance of the solver
+constexpr double kRough = 1e-2;      // tolerance of the fluence for the oblique flux
 
 DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshes, const Lattice& lattice,
                         const Boundary& boundary) {
@@ -80,9 +80,9 @@ DiffusionGrid make_grid(const World& world, std::span<const std::uint32_t> meshe
 }  // namespace
 
 Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes, double cell) {
-  constexpr int kMultiple = 2 * DiffusionGrid::kLargest;  // multiple that allows cells of twice the size
+  constexpr int kMultiple = 2 * DiffusionGrid::kLargest;  // multiple allowing cells of twice the size
   const auto [low, high] = bounds(world, meshes);
-  // No plane of the lattice in a face of a box.
+  // Shifts the lattice so none of its planes coincides with a face of a box.
   const Vec3d margin = Vec3d(1.3713, 1.4289, 1.3317) * cell;
   const auto cells = [&](double extent) {
     return kMultiple * int(std::ceil((extent / cell + 2.8) / kMultiple));

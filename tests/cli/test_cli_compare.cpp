@@ -52,7 +52,7 @@ nlohmann::json comparison_of(const Outcome& outcome) {
 }
 
 // Claim: a picture does not differ from itself, in EXR and PNG: zeros, exit 0 at the bound 0, halves too.
-// Source: metrics.h. Fails if: the comparison is not "above" but "not below", or A is compared with a copy
+// Source: compare.h. Fails if: the comparison is not "above" but "not below", or A is compared with a copy
 // that went through half floats.
 TEST(CliCompare, ItselfIsZero) {
   const Gallery gallery;

@@ -100,9 +100,9 @@ TEST(CliFailures, OutOfMemory) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-// Claim: whatever address space there is, the program makes the picture or ends with exit 3 and the old file as it was; where
-// not even its libraries can be loaded the system says so (127). Source: main.cpp. Fails if: an exception leaves a
-// library's constructor before main, as at 100 MB, and aborts.
+// Claim: with any limit of address space, the program renders the image, or ends with exit 3 and leaves the old
+// file unchanged; if its libraries cannot be loaded, the system reports it (127). Source: main.cpp. Fails if: an
+// exception leaves a library's constructor before main, as at 100 MB, and aborts.
 TEST(CliFailures, NoMemoryAbortsNothing) {
   const SceneFolder folder;
   const std::string out = folder.file("a.exr");

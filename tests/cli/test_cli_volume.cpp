@@ -115,8 +115,8 @@ TEST(CliVolume, UntilError) {
   EXPECT_TRUE(contains(budget.err, "--until-error")) << budget.err;
 }
 
-// Claim: what walks find wrong with a body's meshes is said: holes, parts that overlap, shapes that reach into it.
-// Source: walk_warnings.h. Fails if: a warning goes, or parts that lie apart are said to overlap.
+// Claim: warnings report defects of a body's meshes found by random walks: holes, overlapping parts, other shapes
+// inside. Source: cell_warnings.cpp. Fails if: a warning is missing, or separate parts count as overlapping.
 TEST(CliVolume, WarnsOfBadBodies) {
   const SceneFolder folder;
   const auto said = [&](const std::string& shapes) {
@@ -194,8 +194,8 @@ TEST(CliVolume, CellsLeaveOpenMeshesToProfiles) {
   EXPECT_EQ(render("volume_diffusion"), render("hierarchical"));
 }
 
-// Claim: what cells leave out of a body's surface is said. Source: walk_warnings.h. Fails if: a ball in a ball is no
-// warning, or two apart are one.
+// Claim: a warning reports the part of a body's surface that cells leave out. Source: volume_diffusion_method.cpp.
+// Fails if: a ball in a ball causes no warning, or two separate balls cause one.
 TEST(CliVolume, CellsSayWhatTheyLeaveOut) {
   const SceneFolder folder;
   const auto said = [&](const std::string& place) {

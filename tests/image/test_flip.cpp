@@ -93,7 +93,7 @@ TEST(Flip, IsSymmetricAndZeroOnItself) {
 }
 
 // Claim: the exposure multiplies by a power of two before the cut to [0, 1]; what is beyond white is white.
-// Source: flip.h. Fails if: the cut comes first, or the exposure is a factor.
+// Source: compare.h. Fails if: the cut comes first, or the exposure is a factor.
 TEST(Flip, ExposesAndCuts) {
   const auto times = [](const Layer& layer, float factor) {
     Layer scaled = layer;
@@ -106,7 +106,7 @@ TEST(Flip, ExposesAndCuts) {
 }
 
 // Claim: a pixel that is not finite is black and spoils no other; the map stays finite at any exposure.
-// Source: flip.h. Fails if: NaN goes into the filters (it would spread 21 pixels wide).
+// Source: compare.h. Fails if: NaN goes into the filters (it would spread 21 pixels wide).
 TEST(Flip, NonFiniteIsBlack) {
   Layer broken = waves(0), black = waves(0);
   broken.channels[0][70] = std::nanf("");
@@ -117,7 +117,7 @@ TEST(Flip, NonFiniteIsBlack) {
 }
 
 // Claim: the exposure of a reference whose brightest channel has its p99 at 1/8 is 3 stops; fireflies, pixels
-// off the object and a black picture do not count. Source: flip.h. Fails if: the maximum stands for the p99.
+// off the object and a black picture do not count. Source: compare.h. Fails if: the maximum stands for the p99.
 TEST(Flip, DisplayExposure) {
   Layer layer = make_layer(kWidth, kHeight, [](int, int, int c) { return .125 / (1 << c); });
   std::vector<std::uint8_t> object = everywhere(layer);
@@ -134,7 +134,7 @@ TEST(Flip, DisplayExposure) {
 }
 
 // Claim: one pixel, and pictures narrower than the filters, are fine.
-// Source: flip.h (the border goes on). Fails if: a filter reads beyond the border's pixels.
+// Source: compare.h (the border goes on). Fails if: a filter reads beyond the border's pixels.
 TEST(Flip, TinyPictures) {
   for (const auto& size : {std::pair{1, 1}, std::pair{1, 40}, std::pair{5, 3}}) {
     const auto plain = [&](double value) {

@@ -43,7 +43,7 @@ TEST(Metrics, ByHand) {
 }
 
 // Claim: the p99 is the value of nearest rank: of 1 ... n it is ceil(.99 n).
-// Source: metrics.h. Fails if: the rank is off by one (floor, or 0-based without - 1).
+// Source: compare.h. Fails if: the rank is off by one (floor, or 0-based without - 1).
 TEST(Metrics, PercentileIsOfNearestRank) {
   for (const int n : {1, 2, 99, 100, 101, 1000}) {
     std::vector<double> values;
@@ -77,7 +77,7 @@ TEST(Metrics, FloorIsOfTheP99) {
 }
 
 // Claim: a reference that is black, wholly or but for 1 % of its pixels, makes the error large and not
-// infinite, whatever the unit; two black pictures do not differ. Source: metrics.h. Fails if: the floor is 0.
+// infinite, whatever the unit; two black pictures do not differ. Source: compare.h. Fails if: the floor is 0.
 TEST(Metrics, BlackReference) {
   for (const float unit : {1e-30f, 1.0f, 1e30f}) {
     std::vector<float> a(200, 0), b(200, 0);
@@ -117,7 +117,7 @@ TEST(Metrics, Channels) {
 }
 
 // Claim: NaN and infinities are counted apart, in each picture, and enter no figure: those of the other
-// channels and pixels are what they were. Source: metrics.h. Fails if: an infinity in b counts as error 0
+// channels and pixels are what they were. Source: compare.h. Fails if: an infinity in b counts as error 0
 // (a - inf over inf), or a NaN in one channel takes the pixel from all.
 TEST(Metrics, NonFiniteIsApart) {
   Layer a = grey(10, 10, 1.5), b = grey(10, 10, 1);
@@ -141,7 +141,7 @@ TEST(Metrics, NonFiniteIsApart) {
 
 // Claim: the object is where the coverage is above 0 (or NaN), everything without coverage. A layer has its
 // channels in the order R, G, B whatever the file's; no layer of that name: no channels.
-// Source: metrics.h. Fails if: coverage .01 is dropped, or the channels are taken in the file's order.
+// Source: compare.h. Fails if: coverage .01 is dropped, or the channels are taken in the file's order.
 TEST(Metrics, LayersAndObject) {
   Image image;
   image.width = 3;
@@ -209,7 +209,7 @@ struct NoisyHalves {
 // Claim: with noise of 5 % a half, the estimate is the known expectation, with no error and with one of 3 %,
 // within 4 standard errors (twelve figures: a false alarm in 1300 runs; the seed is fixed, so none), and the
 // standard error is what five hundred repetitions spread by, within 15 % (its own deviation is 3.2 %). The
-// noise would add noise^2 / 2 = 1.25e-3 to (h - d)^2: 40 standard errors and more. Source: metrics.h. Fails
+// noise would add noise^2 / 2 = 1.25e-3 to (h - d)^2: 40 standard errors and more. Source: compare.h. Fails
 // if: d^2 or |product| stands for the product, or the standard error is not divided by sqrt(n).
 TEST(Halves, NoiseDoesNotRaiseTheEstimate) {
   for (const double error : {0.0, .03}) {
@@ -238,9 +238,9 @@ TEST(Halves, NoiseDoesNotRaiseTheEstimate) {
   EXPECT_NEAR(stated / std::sqrt(squares / repetitions - mean * mean), 1, .15);
 }
 
-// Claim: what the quotient keeps of Gaussian noise n is 1.5 n^4 where there is no error, as metrics.h says:
+// Claim: what the quotient keeps of Gaussian noise n is 1.5 n^4 where there is no error, as compare.h says:
 // at n = 10 % 1.5e-4, within a quarter (higher orders: 10 n^2) and 4 standard errors (7e-6 each).
-// Fails if: the remark in metrics.h is wrong.
+// Fails if: the remark in compare.h is wrong.
 TEST(Halves, WhatTheQuotientKeeps) {
   constexpr double n = .1;
   std::mt19937 random(3);
@@ -262,7 +262,7 @@ TEST(Halves, BelowNoise) {
 }
 
 // Claim: a value that is not finite in any of the three takes its channel's pixel out, and no more; black
-// halves give a large error, no infinity. Source: metrics.h. Fails if: d1 alone is looked at.
+// halves give a large error, no infinity. Source: compare.h. Fails if: d1 alone is looked at.
 TEST(Halves, NonFiniteAndBlack) {
   Layer h = grey(4, 4, 1.1), d1 = grey(4, 4, 1), d2 = d1;
   h.channels[0][0] = nan_value;

@@ -52,7 +52,7 @@ TEST(LightSamples, WeightsSumToTheSolidAngle) {
 }
 
 // Claim: surroundings are drawn by the cosine: the sum of weight x cos is pi, with every term alike, and no
-// sample is below the horizon. Source: light_sampling.h. Tolerance: 1e-4. Fails if: the density is uniform.
+// sample is below the horizon. Source: light.h. Tolerance: 1e-4. Fails if: the density is uniform.
 TEST(LightSamples, SurroundingsFollowTheCosine) {
   const Vec3f normal = normalized(Vec3f(1, -2, 3));
   const double sum = sum_over_square(unit_surroundings(), {}, normal, 32, [&](const LightSample& s) {
@@ -64,7 +64,7 @@ TEST(LightSamples, SurroundingsFollowTheCosine) {
   EXPECT_NEAR(sum, pi, 1e-4 * pi);
 }
 
-// Claim: delta lights say so, give 1/d^2 and 1, and are never met by a ray. Source: light_sampling.h.
+// Claim: delta lights say so, give 1/d^2 and 1, and are never met by a ray. Source: light.h.
 // Tolerance: 1e-6. Fails if: their weight is divided by the samples.
 TEST(LightSamples, DeltaLightsAreExact) {
   const Light point = unit_point({0, 4, 0}), sun = unit_directional({0, -1, 0});
@@ -99,7 +99,7 @@ TEST(LightSamples, RaysMeetAreaLights) {
 }
 
 // Claim: emission is the light's colour, and recentring moves places and nothing else. Source:
-// light_sampling.h. Tolerance: none. Fails if: directions are moved too.
+// light.h. Tolerance: none. Fails if: directions are moved too.
 TEST(LightSamples, ColourAndPlace) {
   const Light sphere = light_of(SphereLight{{1, 2, 3}, 4, {5, 6, 7}});
   EXPECT_EQ(emission(sphere), Rgb(5, 6, 7));

@@ -45,7 +45,7 @@ Image half(const Row& row, int seed) {
 }
 
 // Claim: at 100k samples `hierarchical` is within 1 % of `direct`, per channel, and within .3 % in the signed
-// mean. Source: the estimate of two halves (metrics.h), which the reference's noise does not raise.
+// mean. Source: the estimate of two halves (compare.h), which the reference's noise does not raise.
 // Tolerance: the claim; twice the estimate's standard error is allowed beside it. Fails if: classic at .1 sr
 // evaluates (signed mean -.55 %), the near field's E beside shadow edges is the mix of the point's and the
 // samples' alone (normalized diffusion of skin, blue: 1.27 %), or the samples' mean (marble: 2 %).

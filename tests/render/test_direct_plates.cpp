@@ -75,8 +75,8 @@ TEST(DirectPlates, DirectionalDipoleByAngle) {
   }
 }
 
-// Claim: `hierarchical` refuses the directional dipole in a line that names the medium and what to do; the other methods
-// plan it. Source: bodies/plan.h. Fails if: its mean stands for it in silence.
+// Claim: `hierarchical` refuses the directional dipole with a line naming the medium and the remedy; the other
+// methods plan it. Source: bodies/plan.h. Fails if: its mean silently replaces it.
 TEST(DirectPlates, HierarchicalRefusesDirections) {
   Scene scene =
       single_shape(SphereShape{{}, 5}, grey_medium(1, .01, 1.3, ProfileKind::directional_dipole), 1);

@@ -61,8 +61,8 @@ TEST(Textures, OfAnyChannelsAndWindowsAreAlike) {
   EXPECT_TRUE(same_pixels(window, image_of("data_window.json", "t_pad.exr")));
 }
 
-// Claim: the plan counts what reads images where a texture turned out to be constant, too. Source: plan.cpp, 105 MB beside the
-// 60 MB of all other libraries. Fails if only textures that are looked up count.
+// Claim: the plan counts the image reader's memory for constant textures, too. Source: make_plan.cpp, 105 MB in
+// addition to the 60 MB of all other libraries. Fails if only textures with lookups count.
 TEST(Textures, ThatAreConstantsAreInThePlan) {
   const ScratchFolder folder;
   put_png(folder.file("grey.png"), 4, 4, Bytes{128, 128, 128});

@@ -81,7 +81,7 @@ TEST(SceneBrokenFiles, EveryCutIsAnError) {
   }
 }
 
-// Claim: a message stays one short line however long or odd the names in the file are. Source: opaline/error.h.
+// Claim: a message is one short line for any names in the file. Source: opaline/error.h.
 // Fails if `printable` is dropped from ObjectReader's or Value::fail's message.
 TEST(SceneBrokenFiles, MessagesStayShort) {
   const std::string name(1 << 20, 'x');

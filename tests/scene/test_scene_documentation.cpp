@@ -65,7 +65,7 @@ std::string values_text(const KeyInfo& info) {
   return plain.empty() ? "texture" : plain + ", or a texture";
 }
 
-/// The row as scenes/README.md has it.
+/// Table row for scenes/README.md.
 std::string documentation(const KeyInfo& info) {
   const std::string values = values_text(info);
   const std::string_view comma = info.unit.empty() || values.empty() ? "" : ", ";

@@ -98,7 +98,7 @@ TEST(SceneFrames, Mistakes) {
   EXPECT_NE(camera(R"({"keyed": {"1": 20, "3": 400}})").find("camera.field_of_view"), std::string::npos);
 }
 
-// Claim: the last run of two or more # in a path is the frame. Source: load_scene.h. Fails if: a single #, as
+// Claim: the last run of two or more # in a path is the frame. Source: frame_name.h. Fails if: a single #, as
 // names may have, is replaced.
 TEST(SceneFrames, Paths) {
   EXPECT_EQ(with_frame("a/bunny.####.obj", 7), "a/bunny.0007.obj");

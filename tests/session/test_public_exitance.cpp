@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radiant exitance by the public interface of a session.
+// Radiant exitance through the public interface of a session.
 #include "opaline/error.h"
 #include "session_test.h"
 #include "subsurface/method.h"
@@ -7,8 +7,9 @@
 namespace opaline::test {
 namespace {
 
-// Claim: Session::radiant_exitance prepares the scene and returns the exitance of the body with that index; another index is
-// bad input. Source: session.h. Tolerance none. Fails if: it takes the body of another index, or does not prepare.
+// Claim: Session::radiant_exitance prepares the scene and returns the exitance of the body with that index; an
+// unknown index is bad input. Source: session.h. Tolerance none. Fails if: it takes the body of
+// another index, or does not prepare.
 TEST(PublicExitance, IsOfTheBodyWithThatIndex) {
   const std::vector<Vec3d> points{{15, 20, 0}, {25, 10, 0}};
   const std::vector<Vec3f> normals{{0, 1, 0}, {1, 0, 0}};

@@ -12,10 +12,10 @@ namespace {
 
 using namespace test;
 
-// Claim: samples, light and trees, which the cache keeps, are what they were when their versions in
-// src/stages/stage_keys.cpp and src/methods were last raised. Source: this box, in which no function of a mathematical library
-// takes part. If it fails and the change was meant: raise the versions of that stage and put the new value
-// here. Fails if: any constant of a stage is changed.
+// Claim: cached samples, irradiance and octrees have not changed since their versions in
+// src/stages/stage_keys.cpp and src/methods were last raised. Source: this box, computed without functions of a
+// mathematical library. If it fails after an intended change: raise the version of that stage and put the new
+// value here. Fails if: any constant of a stage is changed.
 TEST(StageVersions, ComputeWhatTheyDid) {
   Scene scene = single_shape(BoxShape{{-10, -8, -6}, {10, 8, 6}}, marble(), 500);
   Shape blocker;

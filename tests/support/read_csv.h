@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The CSV of a benchmark read back.
+// Reader of a benchmark's CSV.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace opaline {
 
-/// True if a spreadsheet would take the cell for a formula. Figures are none, whatever their sign.
+/// True if a spreadsheet would read the cell as a formula. Signed numbers are not formulas.
 inline bool is_formula(std::string_view cell) {
   if (cell.empty() || std::string_view("=+-@\t\r").find(cell[0]) == std::string_view::npos) return false;
   double number = 0;
@@ -22,12 +22,13 @@ inline bool is_formula(std::string_view cell) {
   return error != std::errc{} || end != cell.data() + cell.size();
 }
 
-/// Such a cell stands behind an apostrophe, and so does one that looks like that already.
+/// True if the cell needs a leading apostrophe: a formula, or a cell that already begins with apostrophes
+/// before one.
 inline bool needs_apostrophe(std::string_view cell) {
   return is_formula(cell.substr(std::min(cell.find_first_not_of('\''), cell.size())));
 }
 
-/// Walks over the text and counts its lines for messages.
+/// Reads the text and counts its lines for messages.
 class CsvReader {
  public:
   CsvReader(std::string_view text, const std::string& file) : text_(text), file_(file) {}

@@ -10,7 +10,7 @@ using test::expect_walked;
 using test::medium_of_albedo;
 using test::walks_of_seed;
 
-/// The fraction of the incident flux for a fraction of what entered.
+/// Converts a fraction of the transmitted flux to one of the incident flux.
 WalkedValue per_incident(const SlabWalks& walks, const WalkedValue& share) {
   return {share.value * walks.entered, share.error * walks.entered};
 }

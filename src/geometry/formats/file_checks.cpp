@@ -16,7 +16,7 @@
 namespace opaline {
 namespace {
 
-/// The corners of a polygon from its lowest vertex towards the lower of that one's neighbours: the same for all polygons
+/// Corners of a polygon from its lowest vertex towards the lower of its neighbours: equal for all polygons
 /// with the same edges.
 class Circuit {
  public:
@@ -32,7 +32,7 @@ class Circuit {
   std::size_t size() const { return corners_.size(); }
   bool is_forward() const { return is_forward_; }
 
-  /// The polygon's corner at a place of the circuit, and the other way round.
+  /// Polygon corner at an index of the circuit, and the inverse.
   std::uint32_t corner(std::size_t place) const {
     return std::uint32_t((is_forward_ ? start_ + place : start_ + size() - place) % size());
   }
@@ -88,7 +88,7 @@ class DoubleCutter {
   }
 
  private:
-  /// Triangles that are no part of a polygon.
+  /// Triangles outside all polygons.
   void find_given_triangles() {
     std::size_t next = 0;
     for (std::size_t t = 0; t < triangles_.size();) {
@@ -165,10 +165,10 @@ class DoubleCutter {
   Circuit first_, second_;
 };
 
-/// Cuts of polygons with the same corners become alike, whichever corner they start at and whichever way they run, so
-/// that their triangles are duplicates of each other. A quad that the file also gives as two triangles is cut as they are.
-/// in    cuts: of cut_concave_polygons, in the order of the fans; positions that are equal are one corner
-/// out   cuts with those of the later polygons added or replaced
+/// Unifies the triangulations of polygons with the same corners, in any rotation or direction, so their
+/// triangles become duplicates. A quad also given as two triangles uses their diagonal.
+/// in    cuts: of cut_concave_polygons, in the order of the fans; equal positions are one corner
+/// out   cuts, with those of later polygons added or replaced
 void cut_doubles_alike(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
                        const std::vector<Fan>& fans, std::vector<Recut>& cuts) {
   if (!fans.empty()) cuts = DoubleCutter(positions, triangles, fans, cuts).run();

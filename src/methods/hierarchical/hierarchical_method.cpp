@@ -20,12 +20,12 @@
 namespace opaline {
 namespace {
 
-// Few rays: more do not differ by half of the light by chance (shadow_edges.cpp).
+// A few rays suffice; more change the light by less than half (shadow_edges.cpp).
 constexpr int kFewRays = 8;
 
-/// Light fractions of the light entering, per channel.
+/// Fractions of the transmitted light, per channel.
 struct LightShares {
-  std::array<float, 3> shifted{};  ///< LightTransfer::edge_shift of all lights, as far as it is due to chance
+  std::array<float, 3> shifted{};      ///< LightTransfer::edge_shift of all lights, its random part
   std::array<float, 3> from_points{};  ///< from lights without area
 };
 

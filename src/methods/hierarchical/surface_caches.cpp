@@ -21,11 +21,12 @@
 namespace opaline {
 namespace {
 
-/// The light that the shader adds at its points. Beside shadow edges a cache that the settings ask for leaves it to the
-/// points, so its tolerance holds; one that `automatic` takes for its speed holds what a few shadow rays tell.
+/// Adds the exitance depending on the irradiance at the shader's points themselves. Beside shadow edges, an
+/// explicitly requested cache leaves it to the points, to meet its tolerance; an automatic one, made for
+/// speed, stores the estimate of a few shadow rays.
 class OwnLight {
  public:
-  /// Both must outlive it.
+  /// Both must outlive the object.
   OwnLight(const PrecomputeInput& input, const Body& group);
 
   /// As AddOwnLight.
@@ -43,15 +44,14 @@ class OwnLight {
   bool holds_edges_;
 };
 
-// Above this fraction of the irradiance at the point itself (SplitKernel::own_irradiance) the near field's rms
-// radius is under a fifth of h, less than two segments of the finest lattice.
+// Largest weight of the point's own irradiance (SplitKernel::own_irradiance) that a cache resolves. Above it,
+// the near field's rms radius is under a fifth of h, less than two segments of the finest lattice.
 constexpr float kSharp = 0.8f;
-// Error, over the tolerance, that lattices need not resolve: bumps of the mesh, resolved by its own
-// vertices, and noise of a few shadow rays beside a shadow's edge.
+// Interpolation error, over the tolerance, left to lattices: at bumps of the mesh, resolved by its own
+// vertices, and by noise of a few shadow rays beside an edge.
 constexpr float kBumps = 1, kEdgeNoise = 2;
-// Sensitivity to the near field's irradiance (stake_of), over the tolerance, above which points are evaluated directly.
-// `render scenes/bunny-marble.json --resolution 2048x2048 --evaluator surface_cache` against brute_force, p99
-// over all / over the ear: 1: .31 / .63 %, .5: .23 / .27 %.
+// Stake (stake_of), over the tolerance, above which points are evaluated directly; src/exitance/README.md has
+// the comparison.
 constexpr float kTooSharp = 0.5f;
 
 std::uint64_t key_of(const Vec3f& p) {
@@ -60,9 +60,10 @@ std::uint64_t key_of(const Vec3f& p) {
   return hash_bits(hash_bits(bits[0], bits[1]), bits[2]);
 }
 
-/// True if a cache can hold the light depending on the irradiance at each place, so pictures trace no
-/// shadow rays: facets without smooth normals are lit each in its own way, and the shadows of a mean free
-/// path far below the sample spacing are too sharp to interpolate; light that bounces is known at the picture's points.
+/// True if a cache can store the exitance depending on the point's own irradiance, so images trace no shadow
+/// rays. Excludes meshes without smooth normals, whose facets differ in irradiance; mean free paths far below
+/// the sample spacing, whose shadows are too sharp to interpolate; and bounced light, computed at the image's
+/// points only.
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group) {
   const SplitKernel& kernel = hierarchical_state(group).kernel();
   const auto& own = kernel.own_irradiance;
@@ -133,10 +134,9 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
   }
 }
 
-// A cache is begun where its vertices are few against the points of the picture, and given up where its
-// places are not: a place costs about three times what a point does (they lie wider apart, and more of them
-// beside shadow edges), looking up a tenth. It pays from about 320,000 points of the bunny, which has 35,000
-// vertices.
+// Largest ratios of a cache's vertices, and of its points, to the image's points on the body. A cache point
+// costs about three times a hit, being sparser and more often beside a shadow edge; a lookup costs a tenth.
+// src/exitance/README.md has the break-even.
 constexpr double kBegin = 0.11, kMost = 0.4;
 
 // Estimates the image's points on each mesh, by rays through a few pixels.

@@ -37,9 +37,9 @@ std::array<HomogeneousMedium, 3> isotropic_media(const DiffuseProfile& profile) 
 }
 
 /// Cells with the media of the body.
-/// in    body: with the samples of its cut surface; normals: of that
-// Body cells of a medium that varies, what the cells do not resolve is stretched until they do. It still returns as much light, and
-// where it leaves is known within a cell, as everything is.
+/// In a heterogeneous medium, mean free paths below the cells' resolution are lengthened to it, with the same
+/// reflectance; the point of exit is known within a cell anyway.
+/// in    body: with the samples of its cut surface; normals: of the same surface
 VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals) {
   const double cell = body.plan.cell / input.world.unit, least = cell / input.scene.settings.cell_size;
   const auto resolved = [least](ReducedMedium reduced) {

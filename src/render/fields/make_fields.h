@@ -12,10 +12,10 @@
 
 namespace opaline {
 
-/// Field of some meshes, by a method that has no bodies.
+/// Field of some meshes, from a method without bodies.
 struct FieldSource {
   std::span<const std::uint32_t> meshes;
-  /// in    textures: outlive the field; eta: of the boundary
+  /// in    textures: must outlive the field; eta: of the boundary
   std::function<std::unique_ptr<Field>(const SurfaceTextures& textures, float eta)> make;
 };
 
@@ -24,7 +24,7 @@ struct Fields {
   std::vector<std::size_t> of_mesh;  ///< an index into `all` for each mesh of the world
 };
 
-/// in    sources: fields of meshes without a body; must outlive the fields, as the input and the textures
+/// in    sources: of meshes without a body. All arguments must outlive the fields
 Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
                    std::span<const FieldSource> sources);
 
