@@ -26,6 +26,7 @@
 #include "plan/expected_seconds.h"
 #include "plan/make_plan.h"
 #include "plan/picture_warnings.h"
+#include "render/layers.h"
 #include "render/render.h"
 #include "scene/names.h"
 #include "session/scene_hash.h"

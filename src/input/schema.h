@@ -19,8 +19,6 @@ std::span<const KeyInfo> schema();
 std::span<const std::string_view> file_keys();
 /// Path of a key of `settings` or of `settings.laboratory`: "settings.laboratory.near_field".
 std::string settings_path(std::string_view key);
-/// Table row for scenes/README.md.
-std::string documentation(const KeyInfo& info);
 
 /// The rows as a JSON Schema of scene files (draft-07).
 std::string json_schema();
