@@ -92,7 +92,7 @@ Row measure(std::size_t index, const Options& options) {
   for (Shape& shape : scene.shapes) shape.reflectance = {};  // errors are those of translucent surfaces
   Session session;
   session.edit(scene);
-  for (const GroupPlan& group : session.plan().groups) row.samples = std::max(row.samples, group.samples);
+  for (const BodyPlan& group : session.plan().groups) row.samples = std::max(row.samples, group.samples);
   const RenderResult picture = session.render();
   row.estimated = estimated_relative_error(picture.image, picture.translucent);
   const Image a = truth_of(scene, row.samples, 1, name + "-a.exr"),

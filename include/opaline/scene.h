@@ -89,7 +89,7 @@ struct ArtistMedium {
   friend bool operator==(const ArtistMedium&, const ArtistMedium&) = default;
 };
 
-/// Default profile of a medium.
+/// The profile chosen for a medium that names none (choose_models.h).
 struct ChosenProfile {
   ProfileKind kind = ProfileKind::dipole;
   double thickness = std::numeric_limits<double>::infinity();  ///< as Medium::thickness
@@ -101,7 +101,8 @@ struct Medium {
   std::string name;
   std::variant<PhysicalMedium, ArtistMedium> coefficients;
   double eta = 1.3;
-  std::optional<ProfileKind> profile = ProfileKind::dipole;  ///< none: chosen for each body (choose_models.h)
+  std::optional<ProfileKind> profile =
+      ProfileKind::dipole;  ///< none, as in a scene file: chosen for each body
   SourcePlace place{};
   /// Mean cosine g of the scattering angle, (-1, 1), with reduced coefficients. Used by random walks only;
   /// diffusion depends on (1 - g) sigma_s alone.

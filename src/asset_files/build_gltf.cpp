@@ -69,7 +69,7 @@ Transform read_transform(const GltfRecord& record) {
   if (!m.empty()) return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
   Transform t;
   if (!q.empty()) {
-    if (q == std::vector<double>(4)) record.fail("rotation", "is not a rotation", "not 0");
+    if (q == std::vector<double>(4)) record.fail("rotation", "is not a rotation", "a nonzero quaternion");
     t = rotation({q[0], q[1], q[2], q[3]});
   }
   if (!s.empty()) t.x *= s[0], t.y *= s[1], t.z *= s[2];
@@ -147,7 +147,7 @@ class GltfBuilder {
   }
 
   void read_root(const Json& json) {
-    if (!json.is_object()) throw bad_file(gltf_.path, "is no glTF file", "a JSON object");
+    if (!json.is_object()) throw bad_file(gltf_.path, "is not a glTF file", "a JSON object");
     const GltfRecord root(gltf_.path, "", json);
     const std::string version = root.record("asset").text("version");
     if (version.empty())

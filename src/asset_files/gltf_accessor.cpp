@@ -91,7 +91,7 @@ class AccessorReader {
   void check_type(std::string_view type) const {
     if (accessor_.type != type) fail("is of the wrong type", std::string(type), accessor_.type);
     if (size_ == 0)
-      fail("has a componentType that is none of glTF", "5120 to 5123, 5125 or 5126",
+      fail("has a componentType unknown to glTF", "5120 to 5123, 5125 or 5126",
            std::to_string(accessor_.component));
     if (accessor_.count == 0) fail("has no elements", "a count of at least 1", "0");
   }

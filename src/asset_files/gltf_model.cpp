@@ -56,7 +56,8 @@ class ReferenceCheck {
   void index(const std::string& place, std::uint32_t value, std::size_t size) const {
     if (value < size) return;
     fail_at(gltf_.path, place, "refers to nothing",
-            size == 0 ? "nothing: there is none" : "0 to " + std::to_string(size - 1), std::to_string(value));
+            size == 0 ? "no index: the list is empty" : "0 to " + std::to_string(size - 1),
+            std::to_string(value));
   }
 
   void optional(const std::string& place, std::uint32_t value, std::size_t size) const {
@@ -200,7 +201,7 @@ GltfRecord GltfModel::record(const char* list, std::size_t index) const {
   const std::size_t size = count(list);
   if (index >= size)
     fail_at(path, record_name(list, index), "is not there",
-            size == 0 ? "nothing: there is none" : "below " + std::to_string(size));
+            size == 0 ? "no index: the list is empty" : "below " + std::to_string(size));
   return {path, record_name(list, index), lists.find(list)->second[index]};
 }
 
@@ -219,7 +220,7 @@ std::shared_ptr<const GltfModel> load_gltf(const std::string& path) {
   add_hash(gltf->contents, file);
   gltf->file = std::move(file);
   const GltfChunks chunks = gltf_chunks(path, gltf->file);
-  if (!chunks.is_aligned) gltf->warnings.push_back("its chunks are not aligned to 4 bytes, as glTF wants it");
+  if (!chunks.is_aligned) gltf->warnings.push_back("its chunks are not aligned to 4 bytes, as glTF requires");
   const std::vector<GltfBuffer> buffers = build_gltf(chunks.json, *gltf);
   gltf->record_bytes = record_bytes(*gltf, chunks.json);
   check_compression(*gltf);

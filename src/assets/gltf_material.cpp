@@ -162,7 +162,7 @@ class MaterialTranslator {
   std::string tangents() const {
     if (use_.has_tangents) return "around the mesh's TANGENT";
     return use_.has_uvs ? "around tangents of its UVs, not MikkTSpace's: its mesh has no TANGENT"
-                        : "about y, for its mesh has no TEXCOORD_0";
+                        : "around y, because its mesh has no TEXCOORD_0";
   }
 
   /// A colour or number times its texture.
@@ -257,8 +257,8 @@ class MaterialTranslator {
       share = channel(extension_texture(kDiffuse, "diffuseTransmissionTexture"), "a");
     if (weight == 0) {
       not_carried(
-          "transmissionFactor 0 and diffuseTransmissionFactor 0: all light enters that the boundary "
-          "does not reflect");
+          "transmissionFactor 0 and diffuseTransmissionFactor 0: all light enters except the light "
+          "reflected by the boundary");
     } else if (weight < 1 || share) {
       surface.medium["subsurface_weight"] = times(std::move(share), weight, 1.0);
       surface.medium["base_color"] = times(base, triple_json(surface.reflectance), triple_json(Vec3d(1)));
@@ -311,8 +311,8 @@ class MaterialTranslator {
     if (!(distance > 0) || !std::isfinite(distance) || color == Vec3d(1) ||
         scatter.multiscatter_color == Vec3d()) {
       not_carried(
-          "scattering without attenuationDistance, attenuationColor below 1 and a multiscatter colour has no "
-          "effect; treated as opaque");
+          "scattering requires attenuationDistance, attenuationColor below 1 and a multiscatter "
+          "colour; treated as opaque");
       return {};
     }
     if (color != clamped(color))
@@ -368,7 +368,7 @@ class MaterialTranslator {
         if (key.ends_with("Texture")) add(key);
     const std::vector<double> emissive = material_.numbers("emissiveFactor", 3);
     if (!emissive.empty() && emissive != std::vector<double>{0, 0, 0})
-      not_carried("emissiveFactor: ignored, no emission");
+      not_carried("emissiveFactor: ignored, emission is not supported");
     tell_alpha();
     tell_extensions(is_translucent);
   }

@@ -48,7 +48,7 @@ class LightTranslator {
   void run(const std::string& name, const std::string& label) {
     const Vec3d brightness = color() * intensity_;
     if (!(intensity_ >= 0 && luminance(brightness) <= 1e20))
-      light_.fail("intensity", "is not a brightness", "a color and an intensity from 0",
+      light_.fail("intensity", "is not a brightness", "a color and an intensity of at least 0",
                   fmt::format("{}", intensity_));
     const bool has_place = type_ == "point" || type_ == "spot";
     if (!has_place && type_ != "directional")
@@ -132,7 +132,8 @@ void add_camera(const GltfModel& gltf, std::size_t node, const Transform& to_wor
                     {"up", triple_json(up)},
                     {"field_of_view", view}};
     scene.film["resolution"] = picture_size(perspective.number("aspectRatio", 0));
-    scene.translated.push_back(fmt::format("{} -> camera, {:.4g} degrees high", label, view));
+    scene.translated.push_back(
+        fmt::format("{} -> camera, field of view {:.4g} degrees (vertical)", label, view));
   }
 }
 

@@ -95,7 +95,7 @@ ImportedAsset import_asset(const std::string& path, const std::string& mesh_path
     return {std::move(text),           std::move(scene.translated), std::move(scene.not_carried),
             std::move(scene.warnings), std::move(summary),          scene.bytes};
   } catch (const Json::exception&) {
-    throw bad_file(path, "a scene file cannot hold a name in it", "names in UTF-8");
+    throw bad_file(path, "contains a name that is not UTF-8", "names in UTF-8");
   }
 }
 

@@ -194,10 +194,10 @@ class GltfImporter {
     add_surface(shape, use, placed, mesh.primitives.size() > 1);
     scene_.shapes.push_back(std::move(shape));
     parts_.push_back({part, t});
-    scene_.translated.push_back(
-        fmt::format("{}, part {} of the asset -> shape {}{}{}", label, part, in_quotes(name),
-                    skinned ? ", by its skin, joints at rest" : "",
-                    is_faceted ? ", faceted: it has no normals (\"normals\": \"smooth\" makes some)" : ""));
+    scene_.translated.push_back(fmt::format(
+        "{}, part {} of the asset -> shape {}{}{}", label, part, in_quotes(name),
+        skinned ? ", by its skin, joints at rest" : "",
+        is_faceted ? ", faceted: it has no normals (\"normals\": \"smooth\" computes them)" : ""));
   }
 
   /// Primitives of one node with the same medium are one body.
@@ -287,7 +287,8 @@ class GltfImporter {
     for (const std::string& name : used) {
       if (name.starts_with("KHR_materials_") || std::ranges::find(read, name) != read.end()) continue;
       if (required.contains(name))
-        scene_.warn(gltf_.path, "extension " + in_quotes(name) + ", which the asset requires");
+        scene_.warn(gltf_.path,
+                    "extension " + in_quotes(name) + ": required by the asset, but not supported");
       else
         scene_.not_carried.push_back("extension " + in_quotes(name));
     }

@@ -195,7 +195,7 @@ class SurfaceReader {
 
   [[noreturn]] void fail(const char* name, std::string_view got) const {
     throw bad_file(file_, label_ + ": bad input " + in_quotes(name),
-                   "one number, or three with commas between", in_quotes(got));
+                   "one number, or three separated by commas", in_quotes(got));
   }
 
   double number(const char* name, double otherwise, double low, double high) {

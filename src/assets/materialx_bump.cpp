@@ -61,10 +61,10 @@ HeightMap height_map(const pugi::xml_node& normal) {
   const Node image = source_of(input_of(bump, "height"));
   const bool is_tiled = image.name() == std::string_view("tiledimage");
   if (!is_tiled && image.name() != std::string_view("image")) return none("its heights are not an image");
-  if (source_of(input_of(bump, "normal"))) return none("its bump is around another normal");
+  if (source_of(input_of(bump, "normal"))) return none("its bump perturbs another normal");
   const Node coordinates = source_of(input_of(image, "texcoord"));
   if (coordinates && coordinates.name() != std::string_view("texcoord"))
-    return none("its image uses other coordinates than those of the mesh");
+    return none("its image uses coordinates other than the UVs of the mesh");
   HeightMap map{.file = file_of(image), .problem = "its image has no file"};
   std::array<double, 1> scale{1};
   if (const Node given = input_of(bump, "scale"); given && !(read_numbers(given, scale) && scale[0] >= 0))

@@ -26,8 +26,8 @@ Json estimate_json(const Estimate& estimate) {
 }
 
 /// Round errors nearest to the target, and the target itself.
-std::vector<double> error_targets(const std::vector<TradePoint>& points) {
-  const auto [low, high] = std::ranges::minmax(points, {}, &TradePoint::error);
+std::vector<double> error_targets(const std::vector<MeasuredTrade>& points) {
+  const auto [low, high] = std::ranges::minmax(points, {}, &MeasuredTrade::error);
   std::vector<double> values = round_values(std::min(low.error, kTarget), std::max(high.error, kTarget));
   std::ranges::sort(values, {}, [](double value) { return std::abs(std::log(value / kTarget)); });
   values.resize(std::min(values.size(), kColumns));
@@ -36,8 +36,8 @@ std::vector<double> error_targets(const std::vector<TradePoint>& points) {
 }
 
 /// Round times from the cheapest setting on, one beyond the most expensive at least.
-std::vector<double> time_targets(const std::vector<TradePoint>& points) {
-  const auto [low, high] = std::ranges::minmax(points, {}, &TradePoint::cpu);
+std::vector<double> time_targets(const std::vector<MeasuredTrade>& points) {
+  const auto [low, high] = std::ranges::minmax(points, {}, &MeasuredTrade::cpu);
   std::vector<double> values = round_values(low.cpu, 2.5 * high.cpu);
   values.resize(std::min(values.size(), kColumns));
   return values;
@@ -54,14 +54,14 @@ Json target_json(const std::vector<TradeSeries>& series, const std::vector<doubl
 }
 
 void add_trade(const std::vector<TradeSeries>& series, Json& scene) {
-  std::vector<TradePoint> points;
+  std::vector<MeasuredTrade> points;
   for (const TradeSeries& one : series) points.insert(points.end(), one.points.begin(), one.points.end());
   const std::vector<std::size_t> front = pareto_front(points);
   scene["series"] = scene["cpu_to_one_percent"] = Json::array();
   std::size_t number = 0;  // number of the point in all series
   for (const TradeSeries& one : series) {
     Json& json = scene["series"].emplace_back(Json{{"name", one.name}, {"method", one.method}});
-    for (const TradePoint& point : one.points)
+    for (const MeasuredTrade& point : one.points)
       json["points"].push_back({{"row", point.row},
                                 {"cpu", point.cpu},
                                 {"error", point.error},

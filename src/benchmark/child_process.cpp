@@ -51,7 +51,8 @@ class Process {
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) throw run_failed("", std::string("no pipe: ") + std::strerror(errno));
+    if (::pipe2(ends, O_CLOEXEC) != 0)
+      throw run_failed("", std::string("cannot create a pipe: ") + std::strerror(errno));
     const pid_t parent = ::getpid();
     pid_ = ::fork();
     if (pid_ == 0) become_program(argv.data(), ends[1], parent);
@@ -59,7 +60,7 @@ class Process {
     output_ = ends[0];
     if (pid_ > 0) return;
     ::close(output_);
-    throw run_failed("", std::string("no child process: ") + std::strerror(errno));
+    throw run_failed("", std::string("cannot start a child process: ") + std::strerror(errno));
   }
   ~Process() {
     if (pid_ > 0) {

@@ -14,7 +14,7 @@ double on_log_line(double x0, double y0, double x1, double y1, double x) {
 }
 
 /// Kind of an interpolated estimate. Points below the noise are upper bounds, and so are estimates from them.
-Estimate::Kind between(const TradePoint& a, const TradePoint& b) {
+Estimate::Kind between(const MeasuredTrade& a, const MeasuredTrade& b) {
   return a.below_noise || b.below_noise ? Estimate::at_most : Estimate::interpolated;
 }
 
@@ -41,50 +41,50 @@ std::vector<TradeSeries> trade_series(std::span<const BenchRow> rows, const std:
     auto series = std::ranges::find(all, name, &TradeSeries::name);
     if (series == all.end()) series = all.insert(all.end(), {name, row.rung.method, {}});
     const ErrorFigures& worst = row.error->worst;
-    const TradePoint point{i, row.job.cpu.median, std::max(worst.error, worst.error_floor),
-                           worst.error < worst.error_floor,
-                           row.job.cpu.median - row.stages[kShadingStage].cpu.median};
+    const MeasuredTrade point{i, row.job.cpu.median, std::max(worst.error, worst.error_floor),
+                              worst.error < worst.error_floor,
+                              row.job.cpu.median - row.stages[kShadingStage].cpu.median};
     if (point.cpu > 0 && point.error > 0) series->points.push_back(point);
   }
   std::erase_if(all, [](const TradeSeries& series) { return series.points.empty(); });
-  for (TradeSeries& series : all) std::ranges::stable_sort(series.points, {}, &TradePoint::cpu);
+  for (TradeSeries& series : all) std::ranges::stable_sort(series.points, {}, &MeasuredTrade::cpu);
   return all;
 }
 
-std::vector<std::size_t> pareto_front(std::span<const TradePoint> points) {
+std::vector<std::size_t> pareto_front(std::span<const MeasuredTrade> points) {
   std::vector<std::size_t> order(points.size()), front;
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
     return std::pair(points[a].cpu, points[a].error) < std::pair(points[b].cpu, points[b].error);
   });
   for (const std::size_t i : order) {
-    const TradePoint* best = front.empty() ? nullptr : &points[front.back()];
+    const MeasuredTrade* best = front.empty() ? nullptr : &points[front.back()];
     if (best == nullptr || (!best->below_noise && points[i].error < best->error)) front.push_back(i);
   }
   return front;
 }
 
 Estimate cpu_at_error(const TradeSeries& series, double error) {
-  const std::vector<TradePoint>& points = series.points;
+  const std::vector<MeasuredTrade>& points = series.points;
   if (points.front().error <= error) return {Estimate::at_most, points.front().cpu};
   for (std::size_t i = 1; i < points.size(); ++i)
     if (points[i].error <= error)
       return {between(points[i - 1], points[i]),
               on_log_line(points[i - 1].error, points[i - 1].cpu, points[i].error, points[i].cpu, error)};
-  const TradePoint& last = points.back();
+  const MeasuredTrade& last = points.back();
   if (series.method != "direct" || last.below_noise) return {};
   return {Estimate::extrapolated,
           last.fixed_cpu + (last.cpu - last.fixed_cpu) * std::pow(last.error / error, 2)};
 }
 
 Estimate error_at_cpu(const TradeSeries& series, double cpu) {
-  const std::vector<TradePoint>& points = series.points;
+  const std::vector<MeasuredTrade>& points = series.points;
   if (cpu < points.front().cpu) return {};
   for (std::size_t i = 1; i < points.size(); ++i)
     if (cpu < points[i].cpu)
       return {between(points[i - 1], points[i]),
               on_log_line(points[i - 1].cpu, points[i - 1].error, points[i].cpu, points[i].error, cpu)};
-  const TradePoint& last = points.back();
+  const MeasuredTrade& last = points.back();
   if (series.method != "direct" || last.below_noise) return {Estimate::at_most, last.error};
   return {Estimate::extrapolated,
           last.error * std::sqrt((last.cpu - last.fixed_cpu) / (cpu - last.fixed_cpu))};

@@ -13,7 +13,7 @@ namespace opaline {
 
 /// A measured setting, both values > 0. An error below the reference's noise is replaced by the noise, as an
 /// upper bound.
-struct TradePoint {
+struct MeasuredTrade {
   std::size_t row = 0;  ///< row of the benchmark's rows
   double cpu = 0;       ///< s, of the whole job
   double error = 0;     ///< relative, worst channel
@@ -25,7 +25,7 @@ struct TradePoint {
 struct TradeSeries {
   std::string name;  ///< "hierarchical dual_tree, by tolerance"
   std::string method;
-  std::vector<TradePoint> points;
+  std::vector<MeasuredTrade> points;
 };
 
 /// Rows of one scene with an error, in order of the first appearance of their series. Excludes `lambert`: its
@@ -34,7 +34,7 @@ std::vector<TradeSeries> trade_series(std::span<const BenchRow> rows, const std:
 
 /// Indices of the Pareto-optimal points in cost and error, from cheap to expensive.
 /// Ends at the noise: errors below it are not distinguishable.
-std::vector<std::size_t> pareto_front(std::span<const TradePoint> points);
+std::vector<std::size_t> pareto_front(std::span<const MeasuredTrade> points);
 
 /// A derived value.
 struct Estimate {

@@ -15,7 +15,7 @@ std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {
 }
 
 SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group, SurfaceCells* cells) {
-  const GroupPlan& plan = input.plan.groups[group];
+  const BodyPlan& plan = input.plan.groups[group];
   return sample_surface({.world = input.world,
                          .meshes = plan.meshes,
                          .count = plan.samples,
@@ -32,11 +32,11 @@ std::uint64_t point_irradiance_seed(const Settings& settings) {
   return hash_bits(settings.seed, 2000);
 }
 
-std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
-                                         std::span<const SurfaceSample> samples,
-                                         std::span<const Light> lights) {
+std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::size_t group,
+                                           std::span<const SurfaceSample> samples,
+                                           std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
-  const GroupPlan& plan = input.plan.groups[group];
+  const BodyPlan& plan = input.plan.groups[group];
   const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
   return compute_irradiance({input.rays, samples, lights, profile.eta, settings.light_samples,
                              irradiance_seed(settings, group), input.monitor, plan.cell > 0});
@@ -62,7 +62,7 @@ Rgb reduced_absorption(Medium medium) {
   return absorbed;
 }
 
-CutSurface cut_surface(const PrecomputeInput& input, const Body& body) {
+CutSurface body_cut_surface(const PrecomputeInput& input, const Body& body) {
   return cut_outer_surface(input.rays, input.world, body.plan.meshes, body.plan.cell / input.world.unit,
                            body.plan.cell_parts);
 }

@@ -27,7 +27,7 @@ struct MethodState {
 
 /// Translucent shapes sharing samples.
 struct Body {
-  GroupPlan plan;
+  BodyPlan plan;
   DiffuseProfile profile;
   SurfaceSamples surface;
   std::vector<LightTransfer> transfers;  ///< one per light
@@ -53,9 +53,9 @@ std::uint64_t irradiance_seed(const Settings& settings, std::size_t group);
 /// Seed of irradiance_at at shading points and at the points of a surface cache.
 std::uint64_t point_irradiance_seed(const Settings& settings);
 /// in    lights: recentred, any of the scene's
-std::vector<LightTransfer> light_samples(const PrecomputeInput& input, std::size_t group,
-                                         std::span<const SurfaceSample> samples,
-                                         std::span<const Light> lights);
+std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::size_t group,
+                                           std::span<const SurfaceSample> samples,
+                                           std::span<const Light> lights);
 /// The scene's lights in the world's space and unit, with trees (ManyLights) for many lights.
 std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 
@@ -63,7 +63,7 @@ std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 Rgb reduced_absorption(Medium medium);
 
 /// A body's surface cut by the cells of its plan.
-CutSurface cut_surface(const PrecomputeInput& input, const Body& body);
+CutSurface body_cut_surface(const PrecomputeInput& input, const Body& body);
 /// The light transmitted at a body's samples, tinted.
 /// in    lights: those of its transfers
 std::vector<RgbF> entered_irradiance(const Body& body, std::span<const Light> lights);

@@ -61,7 +61,7 @@ namespace {
 
 /// Calls visit(mesh, triangle, u, v) at points spread over the area of a body, in order of its triangles.
 template <class Visit>
-void for_places(const World& world, const GroupPlan& group, std::size_t places, const Visit& visit) {
+void for_places(const World& world, const BodyPlan& group, std::size_t places, const Visit& visit) {
   const double area = area_of(world, group.meshes);
   double before = 0;
   std::size_t next = 0;
@@ -91,7 +91,7 @@ double shortest_length(const std::array<ReducedMedium, 3>& media) {
 
 }  // namespace
 
-double short_length_of(const Scene& scene, const World& world, const GroupPlan& group) {
+double short_length_of(const Scene& scene, const World& world, const BodyPlan& group) {
   constexpr std::size_t kPlaces = 2048;
   const LocalMedia media(scene, world, scene.media[group.medium]);
   const auto width = float(std::sqrt(group.area / double(kPlaces)) / world.unit);

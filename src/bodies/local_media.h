@@ -47,7 +47,7 @@ class LocalMedia {
 };
 
 /// Length to be resolved by the cells of a textured body: the 10th percentile over its surface, mm.
-double short_length_of(const Scene& scene, const World& world, const GroupPlan& group);
+double short_length_of(const Scene& scene, const World& world, const BodyPlan& group);
 
 /// Medium at points inside a body: the medium of the nearest surface point. Empty if the body's medium is
 /// homogeneous.

@@ -13,7 +13,7 @@
 namespace opaline {
 
 /// Translucent shapes sharing samples and one tree.
-struct GroupPlan {
+struct BodyPlan {
   std::string name;                   ///< the group's name, or that of its only shape
   bool shared = false;                ///< a named group, open for other shapes, unlike a lone shape
   std::vector<std::uint32_t> meshes;  ///< indices into World::meshes
@@ -34,7 +34,7 @@ struct GroupPlan {
 };
 
 struct Plan {
-  std::vector<GroupPlan> groups;      ///< empty: nothing translucent, no precompute
+  std::vector<BodyPlan> groups;       ///< empty: nothing translucent, no precompute
   std::vector<std::string> stages;    ///< stages to run, each with its reason
   std::vector<std::string> warnings;  ///< one line each, with the likely fix
   std::size_t bytes =

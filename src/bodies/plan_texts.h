@@ -9,8 +9,8 @@
 namespace opaline {
 
 /// "10,000 samples (the minimum)", or the reason for another number.
-std::string samples_text(const GroupPlan& group);
+std::string samples_text(const BodyPlan& group);
 /// "mean free path 0.3 mm (smallest channel)"
-std::string mean_free_path_text(const GroupPlan& group);
+std::string mean_free_path_text(const BodyPlan& group);
 
 }  // namespace opaline

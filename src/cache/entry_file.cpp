@@ -142,7 +142,7 @@ bool write_entry(const std::string& folder, const EntryName& name, std::uint64_t
   Hdf5Writer writer;
   fill(writer);
   const std::string_view bytes = writer.bytes();
-  if (bytes.size() < kUserBlock) throw run_failed(path, "HDF5 cannot make it");
+  if (bytes.size() < kUserBlock) throw run_failed(path, "HDF5 cannot create it");
   if (bytes.size() > most_bytes) return false;
   const std::string_view payload = bytes.substr(kUserBlock);
   const std::string listing = listing_of(writer.arrays());

@@ -91,7 +91,7 @@ std::string reason_of(const EntryHeader& header, std::uint64_t payload) {
   const std::string text = text_of(header);
   if (!text.starts_with(kMagic)) return "is not a cache entry";
   if (!text.starts_with(fmt::format("{}{}\n", kMagic, kFormat)))
-    return fmt::format("has another version than this program's {}", kFormat);
+    return fmt::format("does not have this program's version {}", kFormat);
   const std::size_t at = text.find('\n' + std::string(kPayload));
   std::uint64_t stated = 0;
   if (at != text.npos)

@@ -126,7 +126,8 @@ ImportArguments checked(ImportArguments import) {
     throw bad_file(import.asset, "is not a supported asset format",
                    "a name that ends in .glb, .gltf, .obj, .ply, .stl or .off");
   if (!import.scene.ends_with(".json"))
-    throw usage_error("the output is a scene file", "a name that ends in .json", "'" + import.scene + "'");
+    throw usage_error("the output of import must be a scene file", "a name that ends in .json",
+                      "'" + import.scene + "'");
   return import;
 }
 

@@ -91,9 +91,9 @@ void add_picture_options(CLI::App& app, Options& options) {
   option(options.crop, "film.crop", "x0,y0,x1,y1")->check(crop_check());
   option(options.exposure, "film.exposure", "STOPS")->check(number_check());
   option(options.view, "film.view", "NAME");
-  app.add_option(
-         "--environment", options.environment,
-         "lat-long environment map (EXR, HDR, PNG) that replaces the lights of the scene; sets exposure 0")
+  app.add_option("--environment", options.environment,
+                 "lat-long environment map (EXR, HDR, PNG) that replaces the lights of the scene; sets the "
+                 "exposure to 0")
       ->type_name("FILE")
       ->group("Image");
   option(options.method, "settings.method", "NAME");
@@ -145,7 +145,7 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
       ->group(quality);
   app.add_option("--time-budget", options.time_budget,
                  "choose samples, tolerance and evaluator for the lowest error within this total CPU time, "
-                 "e.g. 2s; direct: time to stop")
+                 "e.g. 2s; direct stops at this time")
       ->transform(seconds_of())
       ->type_name("TIME")
       ->group(quality);

@@ -46,7 +46,7 @@ std::vector<int> parse_frames(const std::string& text) {
   const auto refused = [&](const std::string& message, const std::string& expected) {
     return Error(ErrorKind::bad_input, "--frames", 0, 0, message, expected, printable(text));
   };
-  const char* const such_as = "such as 1-24, 1-24x2 or 1,5,7-9";
+  const char* const such_as = "a range such as 1-24, 1-24x2 or 1,5,7-9";
   std::set<int> frames;
   std::string_view rest = text;
   do {

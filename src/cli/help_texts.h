@@ -48,7 +48,7 @@ includes start, loading, choosing and writing, but not --verify. opaline predict
 tiles of the full image and small files, and takes as many samples as the budget allows, up to settings.max_samples. If
 even the cheapest image exceeds the budget, opaline renders it and a warning states the expected time. The resolution,
 --spp and settings.light_samples stay as you set them. The choice depends on the clock; the "repeat with" command does
-not. With --method direct, the budget is the time to stop.)";
+not. With --method direct, opaline stops when the budget ends.)";
 
 inline constexpr const char* kImportNotes =
     R"(Other commands accept an asset in place of a scene file and convert it in the same way. Each line on stderr reports the
@@ -60,10 +60,10 @@ conversion of a value, or a part that is not imported.
           sigma_a and sigma_s in 1/mm. Other materials are opaque, with base colour, metalness, roughness and
           specularFactor. Textures may be in the asset or in separate files; samplers are ignored. Lengths are metres.
           1 candela becomes 1e6 W/sr and 1 lux becomes 1 W/mm^2; the exposure of the PNG adapts to the brightness.
-  .mtlx   the constants of open_pbr_surface and standard_surface. A material with subsurface scattering becomes a
+  .mtlx   the constants and the bump of open_pbr_surface and standard_surface. A material with subsurface scattering becomes a
           medium with subsurface_color and subsurface_radius, in the asset's unit; others are opaque, with base
           colour, metalness and specular reflection.
-  OBJ     meshes, one shape per usemtl, with Kd and map_Kd of its MTL. Lengths are read as millimetres.
+  OBJ     meshes, one shape per usemtl, with Kd, map_Kd and the bump map of its MTL. Lengths are read as millimetres.
   PLY, STL, OFF   one opaque shape, grey or with its vertex colours. Lengths are read as millimetres.
 
 opaline reads the files that an asset refers to only from the asset's folder and below. It refuses other paths and
@@ -122,7 +122,7 @@ show an object: coverage A > 0 in the reference, or all pixels if the reference 
 NaN and infinite values are counted but excluded from the means. Any such value in the image fails the comparison.
 
 --halves takes two references with independent noise (two seeds, for example) and prints an error without the noise of
-the references: err^2 = mean of (h - d1)(h - d2) / (d^2 + (0.01 max d)^2), where d is the mean of both. A negative
+the references: err^2 = mean of (h - d1)(h - d2) / (d^2 + (0.01 max d)^2), where h is the image, d1 and d2 are the references and d is their mean. A negative
 value is 'below noise'. A value below twice its standard error is not significant. Errors common to both halves remain.
 
 Error images: .png shows the largest error over the channels: black (0.01 % or less), violet, red (1 %), orange, white

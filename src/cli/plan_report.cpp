@@ -64,7 +64,7 @@ std::string lights_text(const std::vector<Light>& lights) {
 }
 
 /// Adds profile and error, for methods using a radial profile.
-void add_model(Paragraphs& plan, const GroupPlan& group, double across_air) {
+void add_model(Paragraphs& plan, const BodyPlan& group, double across_air) {
   if (method_of(group.method).uses_radial_profile()) add_row(plan, "", "profile " + model_text(group.model));
   const std::string error = model_error_text(group.model, group.method);
   if (!error.empty()) add_row(plan, "", error);
@@ -76,7 +76,7 @@ void add_model(Paragraphs& plan, const GroupPlan& group, double across_air) {
                         100 * across_air));
 }
 
-void add_group(Paragraphs& plan, const Scene& scene, const World& world, const GroupPlan& group) {
+void add_group(Paragraphs& plan, const Scene& scene, const World& world, const BodyPlan& group) {
   add_row(plan, "translucent",
           fmt::format("{} of {}: {:.4g} mm^2, {}", group.name, scene.media[group.medium].name, group.area,
                       mean_free_path_text(group)));
@@ -139,7 +139,7 @@ Json model_json(const BodyModel& model) {
 }
 
 /// asks_air: includes transport across the air, slow to compute
-Json group_json(const Scene& scene, const World& world, const GroupPlan& group, bool asks_air) {
+Json group_json(const Scene& scene, const World& world, const BodyPlan& group, bool asks_air) {
   Json shapes = Json::array();
   for (const std::uint32_t mesh : group.meshes) shapes.push_back(scene.shapes[mesh].name);
   return {{"name", group.name},
@@ -159,7 +159,7 @@ Json plan_json(const Scene& scene, const World& world, const Plan& plan) {
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     if (l == 0 || !share_rays(scene.lights[l - 1], scene.lights[l]))
       lights.push_back({{"name", scene.lights[l].name}, {"type", name_of(scene.lights[l].source)}});
-  for (const GroupPlan& group : plan.groups)
+  for (const BodyPlan& group : plan.groups)
     groups.push_back(group_json(scene, world, group, plan.groups.size() <= kMostShown));
   Json json{{"scene", scene.file},
             {"method", name_of(scene.settings.method)},
@@ -333,7 +333,7 @@ void print_volume_target(const Log& log, double target, const TargetError& chose
         log, "a mesh is open or too thin for diffusion; its model error is unknown, so no error is promised");
   if (!chosen.reached)
     print_warning(log, fmt::format("cannot promise an error below {} against --method volume, including a "
-                                   "model error of {}; uses it instead of {:.3g} %",
+                                   "model error of {}; opaline targets this error instead of {:.3g} %",
                                    short_percent(std::max(chosen.promised, chosen.predicted)),
                                    short_percent(*chosen.model), 100 * target));
 }
@@ -364,9 +364,11 @@ void print_budget(const Log& log, double budget, double before, const TimeBudget
                           planned, chosen.at_most ? "; settings.max_samples limits the samples" : ""));
   if (!chosen.fits)
     print_warning(
-        log, fmt::format("{:.4g} s of CPU are too few: opaline renders the cheapest image of this scene, in "
-                         "about {:.2g} s; fewer pixels, --spp or settings.light_samples reduce the cost",
-                         budget, planned));
+        log,
+        fmt::format(
+            "a budget of {:.4g} s of CPU is too small: opaline renders the cheapest image of this scene, in "
+            "about {:.2g} s; fewer pixels, --spp or settings.light_samples reduce the cost",
+            budget, planned));
 }
 
 void print_skipped(const Log& log, const std::vector<std::string>& outputs) {

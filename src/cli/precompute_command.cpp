@@ -17,7 +17,8 @@ void precompute_frame(const PrecomputeArguments& arguments, Session& session, St
   stages.run("loading", [&] {
     Scene scene = load_scene(arguments.scene, arguments.overrides, frame.value_or(1));
     if (frame) session.expect_pictures(scene.camera_frames);
-    scene.settings.method = Method::hierarchical;  // the only method with stages to precompute
+    // The stages of the other methods are cheap, or have no entries in a cache.
+    if (scene.settings.method != Method::volume_diffusion) scene.settings.method = Method::hierarchical;
     session.edit(std::move(scene));
     return 0;
   });

@@ -68,7 +68,7 @@ void check_budget(const RenderArguments& render) {
     throw bad_usage("--time-budget chooses settings for one image, so frames would flicker",
                     "a single image first, then --frames with the settings of its closing lines");
   if (!render.cache.empty())
-    throw bad_usage("--time-budget plans with the cost of stages, and those from --cache have none",
+    throw bad_usage("--time-budget measures the cost of the stages, and stages from --cache have none",
                     "one of the two");
   const std::pair<bool, const char*> unplanned[] = {
       {!render.samples_ply.empty(), "--samples-ply"},
@@ -112,9 +112,10 @@ void warn_of_little_time(const RenderArguments& arguments, const Film& film, dou
                          const std::optional<DirectResult>& direct) {
   if (!direct || direct->entry_samples > entry_samples_per_pass(film) || spent <= *arguments.time_budget)
     return;
-  print_warning(arguments.log, fmt::format("{:.4g} s of CPU are too few: opaline renders a single pass of "
-                                           "direct, in {:.2g} s; fewer pixels reduce the cost",
-                                           *arguments.time_budget, spent));
+  print_warning(arguments.log,
+                fmt::format("a budget of {:.4g} s of CPU is too small: opaline renders a single pass of "
+                            "direct, in {:.2g} s; fewer pixels reduce the cost",
+                            *arguments.time_budget, spent));
 }
 
 RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache* cache) {

@@ -120,9 +120,10 @@ std::vector<std::string> write_outputs(const RenderArguments& arguments, const S
     written.push_back(arguments.samples_ply);
   }
   if (cut > 0)
-    print_warning(arguments.log, std::to_string(cut) +
-                                     " values exceed 65504, the maximum of 16 bits, and are clamped; --set "
-                                     "film.pixel_type=float keeps them");
+    print_warning(arguments.log,
+                  std::to_string(cut) +
+                      " values exceed 65,504, the maximum of half precision, and are clamped; --set "
+                      "film.pixel_type=float keeps them");
   return written;
 }
 

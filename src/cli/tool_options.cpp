@@ -8,7 +8,9 @@
 namespace opaline {
 
 void add_import_options(CLI::App& app, ImportArguments& import) {
-  app.add_option("ASSET", import.asset, "GLB, glTF 2.0 or OBJ file")->required()->type_name("FILE");
+  app.add_option("ASSET", import.asset, "GLB, glTF 2.0, OBJ, PLY, STL or OFF file")
+      ->required()
+      ->type_name("FILE");
   app.add_option("-o,--output", import.scene, "scene file to write, .json")->required()->type_name("FILE");
   app.add_option(
          "--material", import.material,
@@ -102,7 +104,7 @@ void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& opti
       ->check(number_check())
       ->type_name("X");
   app.add_option("--walks", profile.walks,
-                 "random walks per channel, for diffuse light and for a beam along the normal each (default: "
+                 "random walks per channel, for each of diffuse light and a beam along the normal (default: "
                  "as many as ten seconds of CPU allow in total, at most 1,000,000)")
       ->transform(whole_number(kWalks))
       ->type_name("N");

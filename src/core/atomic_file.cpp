@@ -49,12 +49,12 @@ std::string resolve_link(const std::string& path) {
 
 /// Checks before the work: a rename would silently replace a device or a write-protected file.
 void require_replaceable(const std::string& path) {
-  if (!fs::path(path).has_filename()) throw run_failed(path, "cannot write: not a file name");
+  if (!fs::path(path).has_filename()) throw run_failed(path, "cannot write: it has no file name");
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (status.type() == fs::file_type::not_found) return;
   if (!fs::status_known(status)) throw run_failed(path, "cannot write: " + failure.message());
-  if (fs::is_directory(status)) throw run_failed(path, "cannot write: is a folder");
+  if (fs::is_directory(status)) throw run_failed(path, "cannot write: it is a folder");
   if (!fs::is_regular_file(status)) throw run_failed(path, "cannot write: it is not a regular file");
   // Another process may have removed it since.
   if (::access(path.c_str(), W_OK) != 0 && errno != ENOENT)
@@ -113,7 +113,8 @@ void AtomicFile::commit() {
   // flushes (EINVAL), is not an error.
   const int failure = flush_to_disk(folder_of(path_), O_RDONLY | O_DIRECTORY);
   if (failure != 0 && failure != EACCES && failure != EINVAL)
-    throw run_failed(path_, std::string("written, but its folder not flushed: ") + std::strerror(failure));
+    throw run_failed(path_, std::string("written, but its folder could not be flushed to disk: ") +
+                                std::strerror(failure));
 }
 
 void AtomicFile::commit_unflushed() {

@@ -16,7 +16,7 @@
 namespace opaline {
 
 /// One channel; monostate: no scattering (sigma_s' = 0), and the diffuse part is exactly 0. A kind of profile
-/// is a file defining all of the functions below, and `Kind make_profile(const ReducedMedium&,
+/// is a file defining the six functions up to `slowest_decay`, and `Kind make_profile(const ReducedMedium&,
 /// std::type_identity<Kind>)`; a missing one does not compile. In the order of ProfileKind.
 using ChannelProfile = std::variant<std::monostate, Dipole, NormalizedDiffusion, BetterDipole,
                                     TabulatedProfile, Multipole, DirectionalDipole>;

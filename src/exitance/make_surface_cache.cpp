@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "core/random.h"
-#include "exitance/cut_surface.h"
+#include "exitance/make_patches.h"
 #include "exitance/surface_patch.h"
 
 namespace opaline {
@@ -67,7 +67,7 @@ class Builder {
  public:
   explicit Builder(const SurfaceCacheInput& input) : input_(input) {
     if (!input.add_own_light) cache_.own_irradiance = input.kernel.own_irradiance;
-    normals_ = cut_surface(input.world, input.meshes, kReach * double(input.kernel.radius), cache_);
+    normals_ = make_patches(input.world, input.meshes, kReach * double(input.kernel.radius), cache_);
   }
 
   std::optional<SurfaceCache> build() {

@@ -203,7 +203,7 @@ class MeshChecker {
     report_.holes_filled = filling.filled;
     report_.hole_triangles_added = filling.triangles.size();
     if (filling.unfilled.empty()) return;
-    warn(std::to_string(filling.unfilled.size()) + " holes could not be filled, the largest has " +
+    warn(std::to_string(filling.unfilled.size()) + " holes could not be filled; the largest has " +
          std::to_string(*std::max_element(filling.unfilled.begin(), filling.unfilled.end())) + " edges");
   }
 

@@ -55,7 +55,7 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::strin
   constexpr double most_pixels = 1 << 29;
   const int width = std::max(spec.width, spec.full_width), height = std::max(spec.height, spec.full_height);
   if (double(width) * height > most_pixels)
-    throw bad_file(path, "the image is too large", "at most 537 million pixels, such as 32768 x 16384",
+    throw bad_file(path, "the image is too large", "at most 537 million pixels, such as 32,768 x 16,384",
                    std::to_string(width) + " x " + std::to_string(height) + ", " +
                        std::to_string(std::int64_t(1e-6 * width * height)) + " million; make it smaller");
 }

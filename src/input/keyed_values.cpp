@@ -111,7 +111,7 @@ class KeyedValue {
     for (const Node* value : values)
       if (value->kind != result.kind || value->children.size() != result.children.size() ||
           (value->kind != Node::Kind::number && value->kind != Node::Kind::array))
-        fail(*value, "the values of 'keyed' cannot be blended", "numbers, or lists of as many numbers each");
+        fail(*value, "the values of 'keyed' cannot be blended", "numbers, or lists of the same length");
     result.number = 0;
     for (std::size_t k = 0; k < values.size(); ++k) result.number += weights[k] * values[k]->number;
     result.text = std::to_string(result.number);

@@ -36,8 +36,8 @@ std::vector<KeyInfo> medium_rows() {
                    "the medium by its mean, and `tint` by each texel over the mean, unless `texture_mix` is "
                    "`\"medium\"`")),
       textured(row("medium", "subsurface_radius", number_or_triple, "mm", kNonNegative, "",
-                   "mean free path 1/sigma_t; three numbers are red, green and blue, not x, y, z. A texture "
-                   "multiplies `scale`: `volume_diffusion` and `volume` vary the medium inside, other "
+                   "mean free path 1/sigma_t; three numbers are red, green and blue, not x, y, z. Texels are "
+                   "multiplied by `scale`: `volume_diffusion` and `volume` vary the medium inside, other "
                    "methods use the mean")),
       row("medium", "subsurface_radius_scale", number_or_triple, "", kNonNegative, "1",
           "factor of `subsurface_radius`"),
@@ -71,12 +71,15 @@ std::vector<KeyInfo> medium_rows() {
           "point, in `volume_diffusion` and `volume`; other methods use `\"split\"`",
           kTextureMixNames),
       row("medium", "thickness", length, "", kFiniteNumber,
-          "`\"auto\"`: thickness of flat bodies; otherwise that of the built-in plates, else infinite",
-          "thickness of the shapes, for `\"multipole\"`, which then replaces `\"auto\"`; transmits light "
+          "with the profile `\"auto\"`: thickness of flat bodies; otherwise that of the built-in plates, "
+          "else infinite",
+          "thickness of the shapes, for `\"multipole\"`; if set, this profile replaces `\"auto\"`; transmits "
+          "light "
           "between the two sides"),
       row("medium", "profile", choice, "", kFiniteNumber, "`\"auto\"`", profile_meaning(), kProfileChoices),
       row("medium", "fit", choice, "", kFiniteNumber, "`\"refit\"`",
-          "length scale of `\"normalized_diffusion\"`, which then replaces `\"auto\"`: `\"refit\"`: fitted "
+          "length scale of `\"normalized_diffusion\"`; if set, this profile replaces `\"auto\"`: "
+          "`\"refit\"`: fitted "
           "to random walks with a boundary; without a boundary (Christensen & Burley 2015): "
           "`\"diffuse_entry\"`, `\"searchlight\"` (a beam) and `\"dmfp\"` (from the diffuse mean free path)",
           kFitNames),

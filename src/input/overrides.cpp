@@ -101,7 +101,7 @@ class Override {
       const std::size_t close = rest.find(rest[0], 1);
       const bool is_closed = close != rest.npos && (close + 1 == rest.size() || rest[close + 1] == '.');
       if (!is_closed)
-        fail("a quoted name in the path has no closing quote", "path.\"name.with.points\".key=value");
+        fail("a quoted name in the path has no closing quote", "path.\"name.with.dots\".key=value");
       return {rest.substr(1, close - 1), begin + close + 1};
     }
     std::size_t length = std::min(rest.find('.'), rest.size());
@@ -170,7 +170,7 @@ class Override {
     const std::string more =
         names.size() > most ? " and " + std::to_string(names.size() - most) + " more" : "";
     fail("no " + std::string(kind) + " '" + printable(name) + '\'' + hint +
-         (names.empty() ? "; there is none" : "; there is: " + printable(join(views)) + more));
+         (names.empty() ? "; there is none" : "; available: " + printable(join(views)) + more));
   }
 
   void replace(Node& node, std::string_view value) const {

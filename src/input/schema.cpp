@@ -114,9 +114,9 @@ std::vector<KeyInfo> shape_rows() {
           "STL: 30; OBJ: from its smoothing groups; others: 180",
           "with `file`, without normals: edges with a larger angle between their faces are sharp"),
       row("shape", "medium", text, "", kFiniteNumber, "opaque", "name of a medium"),
-      textured(
-          row("shape", "reflectance", color, "", kUnitInterval, "0.5",
-              "diffuse reflectance of an opaque shape, multiplied by `vertex_colors`; excludes `medium`")),
+      textured(row("shape", "reflectance", color, "", kUnitInterval, "0.5",
+                   "diffuse reflectance of an opaque shape, multiplied by `vertex_colors`; cannot be "
+                   "combined with `medium`")),
       row("shape", "vertex_colors", flag, "", kFiniteNumber, "true; false under a texture",
           "with `file`: vertex colours are the reflectance of an opaque shape, multiplied by `reflectance` "
           "if given; they multiply a medium's `tint` and `base_color`"),
@@ -197,15 +197,15 @@ std::vector<KeyInfo> texture_rows() {
   return {
       row("texture", "texture", file, "", kFiniteNumber, "",
           "EXR, HDR, PNG, JPEG or TIFF, relative to the scene file's folder. `<UDIM>` in the name stands for "
-          "1001 + column + 10 row. `asset.glb#image/0` is an image of an asset. Colours are converted from "
-          "the chromaticities of an EXR to Rec.709, and divided by premultiplied alpha"),
+          "1001 + column + 10 x row. `asset.glb#image/0` is an image of an asset. Colours are converted from "
+          "the chromaticities of an EXR to Rec.709; premultiplied colours are divided by alpha"),
       row("texture", "color_space", choice, "", kFiniteNumber, "`\"automatic\"`",
           "`\"srgb\"` or `\"linear\"`; automatic: linear for float files and non-colour values, otherwise "
           "sRGB",
           kColorSpaceNames),
       row("texture", "scale", number_or_triple, "", kNonNegative, "1", "factor of the values"),
       row("texture", "channel", choice, "", kFiniteNumber, "`\"r\"`",
-          "channel of a number: `\"r\"`, `\"g\"`, `\"b\"` or `\"a\"`", kTextureChannels),
+          "channel used for a number: `\"r\"`, `\"g\"`, `\"b\"` or `\"a\"`", kTextureChannels),
       row("texture", "uv_scale", list, "", kFiniteNumber, "[1, 1]",
           "repeats to the right and down, from the upper left corner"),
       row("texture", "uv_rotation", number, "degrees", kFiniteNumber, "0",

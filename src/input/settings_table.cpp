@@ -184,7 +184,8 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::method>(
           "method", choice, "", kFiniteNumber, "",
           "`\"hierarchical\"`: BSSRDF with a radial profile, by hierarchical evaluation; `\"lambert\"`: "
-          "diffuse reflection, fastest; `\"direct\"`: the same BSSRDF by unbiased Monte Carlo sampling, slow "
+          "diffuse reflection, usually fastest; `\"direct\"`: the same BSSRDF by unbiased Monte Carlo "
+          "sampling, slow "
           "and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the reference; "
           "`\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the reference"),
       member<&Settings::evaluator>(
@@ -220,8 +221,9 @@ std::span<const Member<Settings>> settings_members() {
                                      "estimated standard error of the pixels or cells)"),
       member<&Settings::cell_size>(
           "cell_size", number, "mean free paths", {.05, 100}, "",
-          "`volume_diffusion`: size of the cells at the surface; the unit is 0.45 diffuse mean free paths if "
-          "that is shorter; smaller cells are slower and more accurate"),
+          "`volume_diffusion`: size of the cells at the surface, in mean free paths or, if shorter, in units "
+          "of "
+          "0.45 diffuse mean free paths; smaller cells are slower and more accurate"),
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "",
           "`volume`: re-entry of outgoing and reflected light into the same body, as in concavities; "
@@ -258,7 +260,7 @@ std::span<const Member<Laboratory>> laboratory_members() {
           "near_irradiance", choice, "", kFiniteNumber, "",
           "irradiance of the near field: `\"samples\"`: mean of the samples around the point; `\"point\"`: "
           "traced at the point; `\"mixed\"`: a blend that preserves the width of the kernel, traced at "
-          "points around where the two differ"),
+          "surrounding points where the two differ"),
       member<&Laboratory::entry_strategy>("entry_strategy", choice, "", kFiniteNumber, "",
                                           "method `direct`, sampling of entry points: `\"disc_axes\"`: lines "
                                           "through discs along three axes; `\"chords\"`: chords of spheres"),

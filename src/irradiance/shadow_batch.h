@@ -13,7 +13,7 @@
 #include "core/morton.h"
 #include "core/random.h"
 #include "geometry/ray_scene.h"
-#include "irradiance/room_shadows.h"
+#include "irradiance/environment_shadows.h"
 #include "lights/environment_sample.h"
 #include "lights/light_tree.h"
 #include "lights/shared_rays.h"
@@ -46,7 +46,7 @@ class ShadowBatch {
         samples_(is_delta(lights[0]) ? 1 : samples),
         seed_(seed),
         many_(std::get_if<ManyLights>(&lights[0].source)),
-        room_(std::get_if<EnvironmentLight>(&lights[0].source)),
+        environment_(std::get_if<EnvironmentLight>(&lights[0].source)),
         mean_transmitted_(eta > 0 ? fresnel_transmittance(kMeanCosine, float(eta)) : 1) {}
   ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
       : ShadowBatch(rays, std::span(&light, 1), eta, samples, seed) {}
@@ -75,8 +75,8 @@ class ShadowBatch {
     if (!is_delta(lights_[0]))
       shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
     if (many_ != nullptr) return add_drawn(point, index, shift, first, lobe);
-    if (room_ != nullptr && lobe != nullptr) return add_mirrored(point, index, shift, first, *lobe);
-    if (room_ != nullptr && !keeps_directions_) return add_of_room(point, index, shift, first);
+    if (environment_ != nullptr && lobe != nullptr) return add_mirrored(point, index, shift, first, *lobe);
+    if (environment_ != nullptr && !keeps_directions_) return add_of_environment(point, index, shift, first);
     for (int s = 0; s < samples_; ++s) {
       const std::array<double, 2> square = r2_point(first + std::uint64_t(s), shift);
       std::array<float, 3> weights{};
@@ -133,9 +133,9 @@ class ShadowBatch {
   }
 
  private:
-  static constexpr std::size_t kSorted = 256;       // rays per Embree packet stream
-  static constexpr float kMeanCosine = 2.0f / 3;    // mean cosine under uniform illumination
-  static constexpr std::size_t kFewestOfRoom = 32;  // rays: a ratio of sums over fewer is biased
+  static constexpr std::size_t kSorted = 256;              // rays per Embree packet stream
+  static constexpr float kMeanCosine = 2.0f / 3;           // mean cosine under uniform illumination
+  static constexpr std::size_t kFewestOfEnvironment = 32;  // rays: a ratio of sums over fewer is biased
   // Minimum pools of neighbouring points, and rays of a pool, for a prediction of visibility.
   static constexpr std::size_t kFewestPools = 4, kFewestOfTogether = 256;
   static constexpr float kRounding = 1e-4f;  // rounding of a sum of a few floats, less one of them
@@ -204,7 +204,7 @@ class ShadowBatch {
     for (int s = 0; s < samples_; ++s) {
       const std::uint64_t number = first + std::uint64_t(s);
       for (std::size_t d = 0; d < draws; ++d) squares[d] = r2_point(number * draws + d, shift);
-      sample_environment(*room_, point.normal, squares, samples_ * kLobeDraws, drawn, &lobe);
+      sample_environment(*environment_, point.normal, squares, samples_ * kLobeDraws, drawn, &lobe);
       float sum = 0;
       for (std::size_t d = 0; d < draws; ++d) {
         const RgbF& w = drawn[d].weights;
@@ -225,18 +225,18 @@ class ShadowBatch {
   }
 
   // Successive points sharing a sequence belong to one pixel, and form a pool.
-  void add_of_room(const SurfacePoint& point, std::uint64_t index, const std::array<double, 2>& shift,
-                   std::uint64_t first) {
+  void add_of_environment(const SurfacePoint& point, std::uint64_t index, const std::array<double, 2>& shift,
+                          std::uint64_t first) {
     if (pools_.empty() || index != pooled_) pools_.push_back(means_.size());
     pooled_ = index;
-    means_.push_back(unshadowed(*room_, point.normal));
-    if (shares_shadows_) normals_.push_back(in_picture(*room_, point.normal));
+    means_.push_back(unshadowed(*environment_, point.normal));
+    if (shares_shadows_) normals_.push_back(in_picture(*environment_, point.normal));
     std::array<std::array<double, 2>, kMostAtOnce> squares;
     std::array<EnvironmentSample, kMostAtOnce> drawn;
     for (std::size_t s = 0, count = 0; s < std::size_t(samples_); s += count) {
       count = std::min(kMostAtOnce, std::size_t(samples_) - s);
       for (std::size_t d = 0; d < count; ++d) squares[d] = r2_point(first + s + d, shift);
-      sample_environment(*room_, point.normal, std::span(squares).first(count), samples_, drawn);
+      sample_environment(*environment_, point.normal, std::span(squares).first(count), samples_, drawn);
       for (std::size_t d = 0; d < count; ++d) {
         std::array<float, 3> weights{};
         for (std::size_t l = 0; l < lights_.size(); ++l) weights[l] = drawn[d].weights[channel(l)];
@@ -282,7 +282,7 @@ class ShadowBatch {
   template <class Use>
   void use_pool(std::size_t begin, std::size_t end, const Use& use) const {
     const std::size_t samples = std::size_t(samples_), lights = lights_.size();
-    const bool is_known = (end - begin) * samples >= kFewestOfRoom;
+    const bool is_known = (end - begin) * samples >= kFewestOfEnvironment;
     for (std::size_t l = 0; l < lights; ++l) {
       const std::size_t k = channel(l);
       float lit = 0, carried = 0, all = 0, mean = 0;
@@ -316,7 +316,7 @@ class ShadowBatch {
   template <class Use>
   void use_together(const Use& use) const {
     const std::size_t samples = std::size_t(samples_), lights = lights_.size();
-    RoomShadows shadows(*room_->picture);
+    EnvironmentShadows shadows(*environment_->picture);
     std::array<bool, 2> has_dark{};
     for (std::size_t p = 0; p < pools_.size(); ++p)
       for (std::size_t i = pools_[p] * samples; i < end_of_pool(p) * samples; ++i) {
@@ -377,9 +377,9 @@ class ShadowBatch {
   float eta_;
   int samples_;
   std::uint64_t seed_;
-  const ManyLights* many_;        // null: a single light
-  const EnvironmentLight* room_;  // null: another light
-  float mean_transmitted_;        // approximate transmittance of the boundary
+  const ManyLights* many_;               // null: a single light
+  const EnvironmentLight* environment_;  // null: another light
+  float mean_transmitted_;               // approximate transmittance of the boundary
   std::vector<LightTree::Drawn> drawn_;
   bool scattered_ = false, keeps_directions_ = false, shares_shadows_ = false;
   std::vector<float> carried_;

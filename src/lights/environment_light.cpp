@@ -64,7 +64,7 @@ void sample_environment(const EnvironmentLight& light, const Vec3f& normal,
   }
 }
 
-RoomLobe room_lobe(const EnvironmentLight& light, const Vec3f& normal, const Lobe& lobe) {
+EnvironmentLobe environment_lobe(const EnvironmentLight& light, const Vec3f& normal, const Lobe& lobe) {
   return {
       light.picture.get(), light.rotation,
       light.picture->blocks_in_lobe(in_picture(light, lobe.mirrored), lobe.alpha, in_picture(light, normal))};

@@ -17,15 +17,15 @@ inline constexpr int kLobeDraws = 4;
 inline constexpr std::size_t kMostAtOnce = 8;
 
 /// Specular reflection of an environment by a lobe.
-struct RoomLobe {
+struct EnvironmentLobe {
   const EnvironmentPicture* picture;
   double rotation;
   EnvironmentPicture::InLobe blocks;
 };
-RoomLobe room_lobe(const EnvironmentLight& light, const Vec3f& normal, const Lobe& lobe);
+EnvironmentLobe environment_lobe(const EnvironmentLight& light, const Vec3f& normal, const Lobe& lobe);
 /// Null: not computed for this light.
 inline const EnvironmentPicture::InLobe* known_blocks(const EnvironmentLight& light, const Lobe& lobe) {
-  const RoomLobe* const known = lobe.in_room;
+  const EnvironmentLobe* const known = lobe.in_environment;
   const bool is_this =
       known != nullptr && known->picture == light.picture.get() && known->rotation == light.rotation;
   return is_this ? &known->blocks : nullptr;

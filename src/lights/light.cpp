@@ -54,9 +54,9 @@ int shadow_rays(const Light& light, int light_samples) {
 }
 
 int lobe_draws(const Light& light, const Lobe& lobe) {
-  const auto* const room = std::get_if<EnvironmentLight>(&light.source);
-  if (room == nullptr) return 1;
-  const EnvironmentPicture::InLobe* const blocks = known_blocks(*room, lobe);
+  const auto* const environment = std::get_if<EnvironmentLight>(&light.source);
+  if (environment == nullptr) return 1;
+  const EnvironmentPicture::InLobe* const blocks = known_blocks(*environment, lobe);
   return blocks == nullptr || blocks->blocks.empty() ? kLobeDraws : 1;
 }
 
@@ -120,10 +120,11 @@ LightSample sample_lights(std::span<const Light> lights, const Vec3f& point, con
 
 float sampling_density(const Light& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction,
                        const Lobe* lobe) {
-  if (const auto* room = std::get_if<EnvironmentLight>(&light.source);
-      room != nullptr && lobe != nullptr && known_blocks(*room, *lobe) != nullptr)
-    return room->picture->density(in_picture(*room, direction), in_picture(*room, normal),
-                                  *known_blocks(*room, *lobe));
+  if (const auto* environment = std::get_if<EnvironmentLight>(&light.source);
+      environment != nullptr && lobe != nullptr && known_blocks(*environment, *lobe) != nullptr)
+    return environment->picture->density(in_picture(*environment, direction),
+                                         in_picture(*environment, normal),
+                                         *known_blocks(*environment, *lobe));
   return by_kind(light, [&](const auto& kind) { return sampling_density(kind, point, normal, direction); });
 }
 

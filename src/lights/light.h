@@ -37,13 +37,13 @@ int shadow_rays(const Light& light, int light_samples);
 /// True if rays can hit the light: it has an area or is an environment.
 bool is_visible(const Light& light);
 
-struct RoomLobe;
+struct EnvironmentLobe;
 
 /// Specular lobe of a rough boundary towards the camera: GGX facets around the mirror direction.
 struct Lobe {
-  Vec3f mirrored;                     ///< unit
-  float alpha;                        ///< > 0
-  const RoomLobe* in_room = nullptr;  ///< specular reflection of an environment, if cached
+  Vec3f mirrored;                                   ///< unit
+  float alpha;                                      ///< > 0
+  const EnvironmentLobe* in_environment = nullptr;  ///< specular reflection of an environment, if cached
 };
 
 /// Relative density of a lobe at an angle from its axis: that of the facets at the half angle, over its
@@ -76,7 +76,7 @@ LightSample sample_light(const Light& light, const Vec3f& point, const Vec3f& no
 float sampling_density(const Light& light, const Vec3f& point, const Vec3f& normal, const Vec3f& direction,
                        const Lobe* lobe = nullptr);
 
-/// Radiance of the nearest area light on a ray before `far`, if there is any.
+/// Hit of a ray with an area light.
 struct EmitterHit {
   bool hit = false;
   float t = 0;

@@ -17,8 +17,10 @@ const SubsurfaceMethod& method_of(Method method) {
   static const DirectMethod direct;
   static const VolumeMethod volume;
   static const VolumeDiffusionMethod volume_diffusion;
-  static const std::array<const SubsurfaceMethod*, kMethodNames.size()> kAll{&hierarchical, &lambert, &direct,
-                                                                             &volume, &volume_diffusion};
+  // In the order of the enumeration.
+  static const auto kAll =
+      std::to_array<const SubsurfaceMethod*>({&hierarchical, &lambert, &direct, &volume, &volume_diffusion});
+  static_assert(std::tuple_size_v<decltype(kAll)> == kMethodNames.size());
   return *kAll[std::size_t(method)];
 }
 

@@ -34,7 +34,7 @@ std::vector<Place> places_on(const World& world, const std::vector<std::uint32_t
 
 }  // namespace
 
-double share_across_air(const Scene& scene, const World& world, const GroupPlan& group) {
+double share_across_air(const Scene& scene, const World& world, const BodyPlan& group) {
   const SubsurfaceMethod& method = method_of(group.method);
   if (!method.uses_radial_profile() || !method.spreads_light()) return 0;
   const DiffuseProfile profile = make_diffuse_profile(scene.media[group.medium]);

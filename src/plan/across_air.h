@@ -11,6 +11,6 @@ namespace opaline {
 /// each other, ear to back. Counts pairs of points with a chord outside the body at both ends; chords that
 /// begin inside and cross air in between are not counted.
 /// out   [0, 1]; 0 for a convex body, and for methods without a kernel. Error of about 0.01, from few points
-double share_across_air(const Scene& scene, const World& world, const GroupPlan& group);
+double share_across_air(const Scene& scene, const World& world, const BodyPlan& group);
 
 }  // namespace opaline

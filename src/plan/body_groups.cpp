@@ -25,7 +25,7 @@ double smallest_mean_free_path(const DiffuseProfile& profile) {
 }
 
 /// mm; 0 where a mesh is open
-double mean_thickness(const World& world, const GroupPlan& group) {
+double mean_thickness(const World& world, const BodyPlan& group) {
   double volume = 0;
   for (const std::uint32_t m : group.meshes) {
     if (world.reports[m].open_edges > 0) return 0;
@@ -35,7 +35,7 @@ double mean_thickness(const World& world, const GroupPlan& group) {
 }
 
 // The sum of the squares of the elements of the mean n n^T is the mean of (n . m)^2 over two normals n and m.
-double alignment_of(const World& world, const GroupPlan& group) {
+double alignment_of(const World& world, const BodyPlan& group) {
   std::array<double, 6> sums{};
   double area = 0;
   for (const std::uint32_t m : group.meshes) {
@@ -61,9 +61,9 @@ void check_profile(const Scene& scene, const Medium& medium) {
 
 }  // namespace
 
-std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
-                                   std::vector<std::string>& warnings) {
-  std::vector<GroupPlan> groups;
+std::vector<BodyPlan> find_groups(const Scene& scene, const World& world,
+                                  std::vector<std::string>& warnings) {
+  std::vector<BodyPlan> groups;
   std::vector<std::optional<DiffuseProfile>> profiles(scene.media.size());
   for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
     const Shape& shape = scene.shapes[i];
@@ -82,7 +82,7 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
     const std::string& name = shape.group.empty() ? shape.name : shape.group;
     auto it = groups.end();
     if (!shape.group.empty())
-      it = std::ranges::find_if(groups, [&](const GroupPlan& g) { return g.shared && g.name == name; });
+      it = std::ranges::find_if(groups, [&](const BodyPlan& g) { return g.shared && g.name == name; });
     if (it == groups.end()) {
       groups.push_back({.name = name,
                         .shared = !shape.group.empty(),
@@ -95,7 +95,7 @@ std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
     it->meshes.push_back(std::uint32_t(i));
     it->area += world.measures[i].area * world.unit * world.unit;
   }
-  for (GroupPlan& group : groups) {
+  for (BodyPlan& group : groups) {
     group.thickness = mean_thickness(world, group);
     group.alignment = alignment_of(world, group);
   }

@@ -11,10 +11,9 @@ namespace opaline {
 
 /// Shapes of one group together, all others alone: their medium and shape, without samples.
 /// error where a method cannot use a medium's profile
-std::vector<GroupPlan> find_groups(const Scene& scene, const World& world,
-                                   std::vector<std::string>& warnings);
+std::vector<BodyPlan> find_groups(const Scene& scene, const World& world, std::vector<std::string>& warnings);
 
 /// Model of a body by the profile of its medium (choose_models).
-BodyModel planned_model(const Scene& scene, const GroupPlan& group);
+BodyModel planned_model(const Scene& scene, const BodyPlan& group);
 
 }  // namespace opaline

@@ -66,7 +66,7 @@ MediumExtremes extremes_of(Medium medium) {
   return extremes;
 }
 
-BodyShape shape_of(const GroupPlan& group) {
+BodyShape shape_of(const BodyPlan& group) {
   return {group.area, group.thickness, group.alignment};
 }
 
@@ -134,7 +134,7 @@ std::string model_error_text(const BodyModel& model, Method method) {
          " (both without re-entry)";
 }
 
-BodyModel planned_model(const Scene& scene, const GroupPlan& group) {
+BodyModel planned_model(const Scene& scene, const BodyPlan& group) {
   const Medium& medium = scene.media[group.medium];
   BodyModel model = choose_model(medium, shape_of(group));
   if (medium.profile) {
@@ -148,13 +148,13 @@ BodyModel planned_model(const Scene& scene, const GroupPlan& group) {
   return model;
 }
 
-void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference) {
+void choose_models(Scene& scene, const World& world, std::span<const BodyPlan> reference) {
   if (std::ranges::all_of(scene.media, [](const Medium& m) { return m.profile.has_value(); })) return;
   std::vector<std::string> warnings;  // added by make_plan
   std::vector<bool> is_taken(scene.media.size());
-  for (const GroupPlan& group : find_groups(scene, world, warnings)) {
+  for (const BodyPlan& group : find_groups(scene, world, warnings)) {
     if (scene.media[group.medium].profile) continue;
-    const auto before = std::ranges::find_if(reference, [&](const GroupPlan& other) {
+    const auto before = std::ranges::find_if(reference, [&](const BodyPlan& other) {
       return other.name == group.name && other.shared == group.shared && other.model.is_chosen;
     });
     const ChosenProfile chosen = before != reference.end()

@@ -34,6 +34,6 @@ BodyModel choose_model(const Medium& medium, const BodyShape& shape);
 /// Chooses the open profiles (Medium::profile is none) of a scene's media by their bodies. A medium with
 /// different choices becomes several media of the same name.
 /// reference: bodies of another frame; bodies of the same names use their profiles
-void choose_models(Scene& scene, const World& world, std::span<const GroupPlan> reference = {});
+void choose_models(Scene& scene, const World& world, std::span<const BodyPlan> reference = {});
 
 }  // namespace opaline

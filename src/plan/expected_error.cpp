@@ -16,7 +16,7 @@ std::optional<double> expected_error(const BodyModel& model, Method method) {
 
 std::optional<double> expected_model_error(const Plan& plan) {
   std::optional<double> largest;
-  for (const GroupPlan& group : plan.groups)
+  for (const BodyPlan& group : plan.groups)
     if (const std::optional<double> error = expected_error(group.model, group.method))
       largest = std::max(largest.value_or(0), *error);
   return largest;
@@ -25,7 +25,7 @@ std::optional<double> expected_model_error(const Plan& plan) {
 std::vector<std::string> model_warnings(const Plan& plan) {
   constexpr double kLarge = .2, kBetter = .7;  // bounds of the error
   std::vector<std::string> warnings;
-  for (const GroupPlan& group : plan.groups) {
+  for (const BodyPlan& group : plan.groups) {
     const std::optional<double> error = expected_error(group.model, group.method);
     if (!error || *error <= kLarge) continue;
     const std::optional<double>& other = group.model.expected_error_of_diffusion;

@@ -22,7 +22,7 @@ double seconds_of_shading(const Scene& scene, const Lighting& lighting) {
 double expected_seconds(const Scene& scene, const Plan& plan) {
   const Lighting lighting = lighting_of(scene);
   double seconds = kTriangle * double(plan.triangles) + seconds_of_shading(scene, lighting);
-  for (const GroupPlan& group : plan.groups)
+  for (const BodyPlan& group : plan.groups)
     seconds += method_of(group.method).seconds(scene, group, lighting);
   return seconds;
 }

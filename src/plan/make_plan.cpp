@@ -69,9 +69,10 @@ void check_reach(const Scene& scene, const World& world) {
 void check_bounces(const Scene& scene) {
   const Method method = scene.settings.method;
   if (bounces_of(scene) == 0 || method_of(method).supports_bounces()) return;
-  throw Error(ErrorKind::bad_input, scene.file, 0, 0,
-              fmt::format("settings.bounces: 1: the method {} renders direct light only", name_of(method)),
-              "--set settings.bounces=0, or --method volume_diffusion");
+  throw Error(
+      ErrorKind::bad_input, scene.file, 0, 0,
+      fmt::format("settings.bounces is 1, but the method {} renders direct light only", name_of(method)),
+      "--set settings.bounces=0, or --method volume_diffusion");
 }
 
 // Memory of the points gathering bounced light, and of more in corners; bench_plan.
@@ -97,14 +98,14 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
     plan.stages.push_back(fmt::format("sampling: {} translucent {}", plan.groups.size(),
                                       plan.groups.size() == 1 ? "body" : "bodies"));
     plan.stages.push_back(method.light_stage(scene, lights));
-    for (const GroupPlan& group : plan.groups) {
+    for (const BodyPlan& group : plan.groups) {
       if (!group.reason_against_method.empty())
         plan.stages.push_back(group.name + " by a radial profile: " + group.reason_against_method);
       if (std::string text = method_of(group.method).body_stage(group); !text.empty())
         plan.stages.push_back(std::move(text));
       if (std::ranges::find(used, group.method) == used.end()) used.push_back(group.method);
     }
-    for (const GroupPlan& group : plan.groups)
+    for (const BodyPlan& group : plan.groups)
       if (const std::string text = medium_stage(scene.media[group.medium], scene.settings.method);
           !text.empty())
         plan.stages.push_back(group.name + ": " + text);
@@ -209,7 +210,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   const std::vector<Light> lights = recentred_lights(scene, world);
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
-  for (GroupPlan& group : plan.groups) group.model = planned_model(scene, group);
+  for (BodyPlan& group : plan.groups) group.model = planned_model(scene, group);
   plan.warnings.insert(plan.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   std::set<std::string> said;  // reported by the first of several shapes from one file
   for (const MeshReport& report : world.reports)
@@ -239,8 +240,8 @@ Plan make_plan(const Scene& scene, const World& world) {
   plan.bytes += picture_bytes(scene, environments);
   std::size_t samples = 0;
   double temporary = 0;  // one body after the other
-  const BodyPlanning planning{scene, world, lights, fewest_samples(plan.groups.size())};
-  for (GroupPlan& group : plan.groups) {
+  const PlanningInput planning{scene, world, lights, fewest_samples(plan.groups.size())};
+  for (BodyPlan& group : plan.groups) {
     // Fitted for homogeneous media.
     const bool varies = varies_inside(scene.media[group.medium]) &&
                         method_of(scene.settings.method).follows_textures_inside();

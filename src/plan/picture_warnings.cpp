@@ -117,7 +117,7 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
   const std::string look = "--set camera.look_at=" + point_text(middle, scene.mm_per_unit);
   std::string advice = look + " centres them";
   if (scene.film.crop) {
-    advice = "render a small --resolution without a crop to locate them";
+    advice = "render without a crop, at a small --resolution, to locate them";
   } else if (distance <= radius) {
     const double far = 1.2 * radius / std::sin(camera.field_of_view * std::numbers::pi / 360);
     const Vec3d back = distance > 0 ? normalized(towards) : normalized(camera.look_at - camera.position);
@@ -201,7 +201,7 @@ std::string cause_of_black(const Scene& scene, const Shape& shape) {
   if (is_black(shape.reflectance, shape.reflectance_texture))
     return "the reflectance of " + shape.name + " is 0";
   if (shape.gloss && shape.gloss->metalness == 1)
-    return shape.name + " is a metal, which reflects only surroundings, environments and lights";
+    return shape.name + " is a metal, which shows reflections only";
   return {};
 }
 

@@ -28,7 +28,7 @@ std::optional<PlateChannel> compare_channel(const DiffuseProfile& medium, std::s
 
 std::vector<PlateModel> compare_plates(const Scene& scene, const Plan& plan) {
   std::vector<PlateModel> plates;
-  for (const GroupPlan& group : plan.groups) {
+  for (const BodyPlan& group : plan.groups) {
     const double thickness = group.thickness;
     if (group.meshes.size() != 1 || !(thickness > 0) || group.area < kFlat * thickness * thickness) continue;
     const Medium& medium = scene.media[group.medium];

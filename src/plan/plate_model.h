@@ -21,7 +21,7 @@ struct PlateChannel {
 struct PlateModel {
   std::string body;
   ProfileKind kind = ProfileKind::dipole;
-  double thickness = 0;                                 ///< GroupPlan::thickness
+  double thickness = 0;                                 ///< BodyPlan::thickness
   std::array<std::optional<PlateChannel>, 3> channels;  ///< none: no scattering, or the plate is thick
 };
 

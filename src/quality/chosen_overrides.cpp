@@ -13,7 +13,7 @@ std::vector<std::string> chosen_overrides(const Session& session, std::size_t en
     return {fmt::format("settings.cell_size={}", settings.cell_size)};
   std::vector<std::string> overrides{fmt::format("settings.tolerance={}", settings.tolerance),
                                      fmt::format("settings.evaluator={}", name_of(settings.evaluator))};
-  const std::vector<GroupPlan>& groups = session.plan().groups;
+  const std::vector<BodyPlan>& groups = session.plan().groups;
   if (groups.size() == 1)
     overrides.push_back(fmt::format("settings.samples={}", groups[0].samples));
   else if (settings.sample_spacing)

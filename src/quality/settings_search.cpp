@@ -24,7 +24,7 @@ void SettingsSearch::begin(double tolerance) {
   if (settings.evaluator == EvaluatorKind::automatic) settings.evaluator = EvaluatorKind::dual_tree;
   session.edit(scene);
   double largest = 0;
-  for (const GroupPlan& group : session.plan().groups) {
+  for (const BodyPlan& group : session.plan().groups) {
     area += group.area;
     largest = std::max(largest, group.area);
   }
@@ -68,7 +68,7 @@ Image SettingsSearch::first_picture() {
 
 std::size_t SettingsSearch::planned_samples() const {
   std::size_t samples = 0;
-  for (const GroupPlan& group : session.plan().groups) samples += group.samples;
+  for (const BodyPlan& group : session.plan().groups) samples += group.samples;
   return samples;
 }
 

@@ -30,7 +30,7 @@ constexpr double kQuickCells = 3e5;  // solved in about a second
 /// large for cells.
 std::optional<double> model_error(const Plan& plan) {
   double worst = 0;
-  for (const GroupPlan& group : plan.groups) {
+  for (const BodyPlan& group : plan.groups) {
     if (group.method != Method::volume_diffusion || !group.model.expected_error_of_diffusion ||
         group.thickness < kThinnest * group.smallest_mean_free_path)
       return {};
@@ -42,14 +42,14 @@ std::optional<double> model_error(const Plan& plan) {
 /// Edge of the smallest cells of all bodies, mm.
 double smallest_cell(const Plan& plan) {
   double smallest = INFINITY;
-  for (const GroupPlan& group : plan.groups)
+  for (const BodyPlan& group : plan.groups)
     if (group.method == Method::volume_diffusion) smallest = std::min(smallest, group.cell);
   return smallest;
 }
 
 double all_cells(const Plan& plan) {
   double cells = 0;
-  for (const GroupPlan& group : plan.groups)
+  for (const BodyPlan& group : plan.groups)
     if (group.method == Method::volume_diffusion)
       cells += expected_cells(group.area, group.thickness, group.cell);
   return cells;

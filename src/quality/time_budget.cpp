@@ -263,7 +263,7 @@ TimeBudget fit_budget(Session& session, Scene scene, double seconds, const Finis
   BudgetSearch search(session, scene, seconds, monitor);
   TimeBudget result = search.run(finish);
   session.edit(result.sees_translucent ? search.chosen() : std::move(scene));
-  for (const GroupPlan& group : session.plan().groups) result.samples += group.samples;
+  for (const BodyPlan& group : session.plan().groups) result.samples += group.samples;
   return result;
 }
 

@@ -88,7 +88,7 @@ void try_trade(Session& session, Scene scene, const std::function<void(const Tra
   session.edit(scene);
   double area = 0;
   std::size_t given = 0, largest = 0;
-  for (const GroupPlan& group : session.plan().groups) {
+  for (const BodyPlan& group : session.plan().groups) {
     area += group.area;
     given += group.samples;
     largest = std::max(largest, group.samples);

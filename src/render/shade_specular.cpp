@@ -168,7 +168,7 @@ struct Shader::GlossyHits {
   std::uint64_t seed;
   std::vector<std::uint64_t> keys;  // random-number keys, in the sequence of the pixel
   std::vector<Lobe> lobes;
-  std::vector<RoomLobe> rooms;  // reflections of an environment by the lobes, if any
+  std::vector<EnvironmentLobe> reflected;  // reflections of an environment by the lobes, if any
 
   GlossyHits(const Shader& shader, const SurfaceHits& all, const RayBatch& rays)
       : hits(all),
@@ -191,21 +191,22 @@ struct Shader::GlossyHits {
       const Vec3f& view = frames.back().view;
       lobes.push_back({frames.back().world({-view.x, -view.y, view.z}), boundary(i).alpha()});
     }
-    const auto room = std::ranges::find_if(
+    const auto environment = std::ranges::find_if(
         shader.lights_, [](const Light& l) { return std::holds_alternative<EnvironmentLight>(l.source); });
-    if (room == shader.lights_.end()) return;
-    rooms.reserve(lobes.size());
+    if (environment == shader.lights_.end()) return;
+    reflected.reserve(lobes.size());
     // Neighbouring rays have similar lobes, which share one table.
     std::vector<Lobe> known;
     for (std::size_t i = 0; i < lobes.size(); ++i) {
       const auto recent = known.end() - std::ptrdiff_t(std::min(known.size(), kRecentLobes));
       auto alike = std::find_if(recent, known.end(), [&](const Lobe& k) { return are_alike(k, lobes[i]); });
       if (alike == known.end()) {
-        rooms.push_back(room_lobe(std::get<EnvironmentLight>(room->source), hits.points[i].normal, lobes[i]));
-        lobes[i].in_room = &rooms.back();
+        reflected.push_back(environment_lobe(std::get<EnvironmentLight>(environment->source),
+                                             hits.points[i].normal, lobes[i]));
+        lobes[i].in_environment = &reflected.back();
         known.push_back(lobes[i]);
       } else {
-        lobes[i].in_room = alike->in_room;
+        lobes[i].in_environment = alike->in_environment;
       }
     }
   }

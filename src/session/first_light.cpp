@@ -111,13 +111,13 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
   const SurfaceTextures textures(input.scene, input.world);
   std::vector<Body> groups;
   for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
-    GroupPlan plan = input.plan.groups[g];
+    BodyPlan plan = input.plan.groups[g];
     plan.method = Method::hierarchical;
     const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
     SurfaceSamples surface =
         draft_samples(input.world, plan.meshes, std::max(kFewest, plan.samples / kFewer));
     SplitKernel kernel = body_kernel(profile, surface.spacing(), input.world, input.scene);
-    std::vector<LightTransfer> transfers = light_samples(input, g, surface.samples, lights);
+    std::vector<LightTransfer> transfers = trace_transfers(input, g, surface.samples, lights);
     groups.push_back({plan, profile, std::move(surface), std::move(transfers)});
     Body& body = groups.back();
     body.entering = entering_tints(textures, body.surface.samples);

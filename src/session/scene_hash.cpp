@@ -50,8 +50,8 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
   for (const Shape& shape : scene.shapes)
     for (const Texture* texture : textures_of(scene, shape)) add(std::to_string(texture->file->hash()));
   for (const Light& light : scene.lights)
-    if (const auto* room = std::get_if<EnvironmentLight>(&light.source))
-      add(std::to_string(room->picture->hash()));
+    if (const auto* environment = std::get_if<EnvironmentLight>(&light.source))
+      add(std::to_string(environment->picture->hash()));
   return hash.digest();
 }
 

@@ -124,7 +124,7 @@ void Session::State::anchor(Scene scene, Monitor* monitor) {
   const CancelScope scope(monitor);
   edit(std::move(scene));
   reference_ = plan_.groups;
-  const auto has_placed = [](const GroupPlan& group) { return !(group.cell > 0); };
+  const auto has_placed = [](const BodyPlan& group) { return !(group.cell > 0); };
   if (!is_needed() || std::ranges::none_of(plan_.groups, has_placed)) return;
   arrange_bodies();
   update_rays();
@@ -139,7 +139,7 @@ void Session::State::keep_spacing() {
   constexpr double kDensest = 2, kSparsest = 1.1;  // requested spacing over the current one, and the inverse
   const Settings& settings = scene_.settings;
   if (settings.samples || matches_new_) return;
-  for (GroupPlan& group : plan_.groups) {
+  for (BodyPlan& group : plan_.groups) {
     if (group.cell > 0) continue;
     const auto body = std::ranges::find_if(bodies_, [&](const Body& b) { return b.plan.name == group.name; });
     if (body == bodies_.end()) continue;
@@ -151,7 +151,7 @@ void Session::State::keep_spacing() {
     if (asked > kDensest * kDensest * there || there > kSparsest * kSparsest * asked) continue;
     group.samples = origin.count;
     group.spacing = std::sqrt(group.area / double(group.samples));
-    group.reason = "as many as there are: near enough to " + group.reason;
+    group.reason = "unchanged, close enough to " + group.reason;
   }
 }
 
@@ -234,6 +234,8 @@ void Session::State::prepare(Monitor* monitor) {
 RenderResult Session::State::render(Monitor* monitor) {
   const CancelScope scope(monitor);
   prepare(monitor);
+  if (auto image = method_of(scene_.settings.method).render_image({scene_, *world_, *rays_, plan_, monitor}))
+    return *std::move(image);
   HeldView* const view = held_view();
   if (view != nullptr) view->next_picture();
   RenderInput input{scene_, *world_, *rays_, bodies(), monitor, view};
@@ -296,7 +298,7 @@ void Session::State::arrange_bodies() {
   std::vector<Body> bodies(plan_.groups.size());
   std::vector<BodyKeys> keys(plan_.groups.size());
   for (std::size_t g = 0; g < bodies.size(); ++g) {
-    const GroupPlan& plan = plan_.groups[g];
+    const BodyPlan& plan = plan_.groups[g];
     const auto old = std::ranges::find_if(
         bodies_, [&](const Body& b) { return b.plan.name == plan.name && b.plan.shared == plan.shared; });
     if (old != bodies_.end()) {

@@ -74,7 +74,7 @@ struct Session::State {
   StageKey bounced_key_;
   StageKey view_key_, view_surfaces_key_, view_coats_key_, view_near_key_, view_samples_key_;
   std::vector<StageKey> view_light_keys_;
-  std::vector<GroupPlan> reference_;  ///< plans of the anchor; empty: none
+  std::vector<BodyPlan> reference_;  ///< plans of the anchor; empty: none
   bool edits_ = true, prepared_ = false, anchored_ = false, matches_new_ = false;
   SourceKeys source_keys_;
   WalkStore walk_store_;

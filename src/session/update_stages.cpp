@@ -23,14 +23,14 @@ void renumber(std::vector<SurfaceSample>& samples, const std::vector<std::uint32
 }
 
 /// Number of samples on the stretched surface at their current spacing.
-std::size_t carried_count(const SampleOrigin& origin, const GroupPlan& plan) {
+std::size_t carried_count(const SampleOrigin& origin, const BodyPlan& plan) {
   const double stretched = origin.area > 0 ? std::max(1.0, plan.area / origin.area) : 1;
   return std::size_t(std::min(1e9, double(origin.surface.samples.size()) * stretched));
 }
 
 }  // namespace
 
-bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings) {
+bool has_outgrown(const SampleOrigin& origin, const BodyPlan& plan, const Settings& settings) {
   constexpr double kMore = 2;          // factor on the number, if above the scene's maximum
   constexpr double kFewer = 1.0 / 16;  // fraction of the number: spacing four times as large as requested
   if (!(origin.area > 0)) return false;
@@ -78,7 +78,7 @@ void Session::State::cut_new_samples(Body& body, BodyKeys& known, const Precompu
   if (anchored_ && !known.is_carried()) known.origin.surface = std::move(body.surface);
   if (!anchored_) known.origin = {};
   known.samples_key = {};
-  CutSurface cut = cut_surface(input, body);
+  CutSurface cut = body_cut_surface(input, body);
   body.surface = std::move(cut.surface);
   known.cut_normals = std::move(cut.normals);
   known.meshes = body.plan.meshes;
@@ -172,7 +172,7 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
   }
   if (!missing.empty()) {
     const std::uint64_t before = rays_->statistics().rays;
-    std::vector<LightTransfer> traced = light_samples(input, group, body.surface.samples, missing);
+    std::vector<LightTransfer> traced = trace_transfers(input, group, body.surface.samples, missing);
     work_.sample_rays += rays_->statistics().rays - before;
     work_.lights_traced += missing.size();
     for (std::size_t i = 0; i < missing.size(); ++i) {

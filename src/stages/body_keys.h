@@ -26,7 +26,7 @@ struct SampleOrigin {
 
 /// True if the body no longer fits the spacing of carried samples: they would exceed the scene's limit, or,
 /// with a set number, be a small fraction of it.
-bool has_outgrown(const SampleOrigin& origin, const GroupPlan& plan, const Settings& settings);
+bool has_outgrown(const SampleOrigin& origin, const BodyPlan& plan, const Settings& settings);
 
 /// Keys of the stages shared by all methods.
 struct BodyKeys {

@@ -13,7 +13,7 @@ struct Ball {
 };
 
 /// Bounding sphere of all a body's meshes.
-Ball ball_around(std::span<const MeshKeys> meshes, const GroupPlan& group) {
+Ball ball_around(std::span<const MeshKeys> meshes, const BodyPlan& group) {
   Ball ball{};
   for (const std::uint32_t m : group.meshes) ball.center += meshes[m].center / double(group.meshes.size());
   for (const std::uint32_t m : group.meshes)
@@ -45,7 +45,7 @@ bool sweep_meets(const Ball& ball, const Vec3d& direction, const Ball& other) {
 
 }  // namespace
 
-bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
+bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const BodyPlan& group,
                 const Light& light, double unit) {
   if (std::ranges::find(group.meshes, mesh) != group.meshes.end()) return true;
   Ball target = ball_around(meshes, group);

@@ -11,7 +11,7 @@ namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kSamplesVersion = 2, kCutSurfaceVersion = 2, kCarriedVersion = 3,
-                        kTransferVersion = 4, kOctreeVersion = 1, kWalkedProfileVersion = 1;
+                        kTransferVersion = 4, kTransmittedVersion = 1, kWalkedProfileVersion = 1;
 
 }  // namespace
 
@@ -44,21 +44,21 @@ std::vector<MeshKeys> mesh_keys(const World& world) {
 }
 
 StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group) {
-  const GroupPlan& plan = input.plan.groups[group];
+  const BodyPlan& plan = input.plan.groups[group];
   KeyBuilder key("samples", kSamplesVersion);
   key.add(std::uint64_t(plan.samples)).add(sampling_seed(input.scene.settings, group));
   for (const std::uint32_t m : plan.meshes) key.add(meshes[m].all);
   return key.key();
 }
 
-StageKey cut_surface_key(const GroupPlan& group, std::span<const MeshKeys> meshes, double unit) {
+StageKey cut_surface_key(const BodyPlan& group, std::span<const MeshKeys> meshes, double unit) {
   KeyBuilder key("cut surface", kCutSurfaceVersion);
   key.add(group.cell / unit).add(std::uint64_t(group.cell_parts));
   for (const std::uint32_t m : group.meshes) key.add(meshes[m].all);
   return key.key();
 }
 
-StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,
+StageKey carried_samples_key(const StageKey& from, const BodyPlan& group, std::span<const MeshKeys> meshes,
                              double unit) {
   KeyBuilder key("carried samples", kCarriedVersion);
   key.add(from).add(unit);
@@ -68,7 +68,7 @@ StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::
 
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light) {
-  const GroupPlan& plan = input.plan.groups[group];
+  const BodyPlan& plan = input.plan.groups[group];
   const Settings& settings = input.scene.settings;
   KeyBuilder key("transfer", kTransferVersion);
   key.add(embree_version()).add(std::string(widest_instructions()));
@@ -145,7 +145,7 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
       if (*map) add_to_key(key, **map);
     if (shape.normal_map || shape.bump_map) add_coordinates(key, input.world.meshes[i]);
   }
-  for (const GroupPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
+  for (const BodyPlan& group : input.plan.groups) key.add_array(std::span(group.meshes));
   return key.key();
 }
 
@@ -180,7 +180,7 @@ StageKey view_light_key(const Light& light) {
 
 StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> transfers,
                          std::span<const Light> lights, const StageKey& tint) {
-  KeyBuilder key("octree", kOctreeVersion);
+  KeyBuilder key("octree", kTransmittedVersion);
   key.add(samples);
   if (tint != StageKey{}) key.add(tint);
   for (std::size_t l = 0; l < lights.size(); ++l) key.add(transfers[l]).add(emission(lights[l]));

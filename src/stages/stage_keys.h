@@ -33,11 +33,11 @@ StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> mes
 
 /// Cache key of a body's samples on cells cutting its meshes.
 /// in    unit: of the world, mm
-StageKey cut_surface_key(const GroupPlan& group, std::span<const MeshKeys> meshes, double unit);
+StageKey cut_surface_key(const BodyPlan& group, std::span<const MeshKeys> meshes, double unit);
 
 /// Cache key of the samples with key `from`, carried along to the body's current meshes.
 /// in    unit: unit of their world over that of this one
-StageKey carried_samples_key(const StageKey& from, const GroupPlan& group, std::span<const MeshKeys> meshes,
+StageKey carried_samples_key(const StageKey& from, const BodyPlan& group, std::span<const MeshKeys> meshes,
                              double unit);
 
 /// Cache key of the light transmitted at samples from one light: the samples, position and size of the light
@@ -81,7 +81,7 @@ StageKey view_light_key(const Light& light);
 /// True if a mesh could lie between a light and a body's meshes, from the bounding spheres of all;
 /// conservative.
 /// in    light: recentred; unit: World::unit
-bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const GroupPlan& group,
+bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const BodyPlan& group,
                 const Light& light, double unit);
 
 }  // namespace opaline

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exitance of a surface at camera hits, and its error. A method of the
-// program is a field with a file of its own; make_fields.cpp has the table of bodies and fields.
+// Exitance of a surface at hits, and its error. Methods make the fields of bodies; render/fields/ has the fields of
+// surfaces without one.
 #pragma once
 
 #include <cstdint>

@@ -5,7 +5,7 @@
 
 namespace opaline {
 
-void SubsurfaceMethod::plan(const BodyPlanning& input, GroupPlan& body,
+void SubsurfaceMethod::plan(const PlanningInput& input, BodyPlan& body,
                             std::vector<std::string>& warnings) const {
   choose_samples(input.scene, input.fewest_samples, body, warnings);
 }

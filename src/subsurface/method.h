@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "exitance/evaluate.h"
+#include "opaline/session.h"
 #include "subsurface/body_stages.h"
 #include "subsurface/field.h"
 #include "subsurface/method_layers.h"
@@ -50,17 +51,17 @@ class SubsurfaceMethod {
   // Plan.
 
   /// Chooses the samples of a body, or another method for it.
-  virtual void plan(const BodyPlanning& input, GroupPlan& body, std::vector<std::string>& warnings) const;
-  virtual BodyMemory memory(const BodyPlanning&, const GroupPlan&) const { return {}; }
+  virtual void plan(const PlanningInput& input, BodyPlan& body, std::vector<std::string>& warnings) const;
+  virtual BodyMemory memory(const PlanningInput&, const BodyPlan&) const { return {}; }
   /// CPU time to prepare a body, and to shade a pixel besides its camera rays, s.
-  virtual double seconds(const Scene&, const GroupPlan&, const Lighting&) const { return 0; }
+  virtual double seconds(const Scene&, const BodyPlan&, const Lighting&) const { return 0; }
   virtual double seconds_of_pixel(const Scene&, const Lighting&) const { return 0; }
   /// Samples tracing shadow rays; infinite: enough rays that a careful build of their structure always pays
   /// off.
   virtual double samples_with_shadow_rays(const Plan&) const { return INFINITY; }
   /// Lines of the plan: how light reaches the bodies; one body; all bodies; bounces; shading.
   virtual std::string light_stage(const Scene& scene, std::span<const Light> lights) const;
-  virtual std::string body_stage(const GroupPlan&) const { return {}; }
+  virtual std::string body_stage(const BodyPlan&) const { return {}; }
   virtual void list_stages(const Scene&, std::vector<std::string>&) const {}
   virtual std::string bounces_stage() const;
   virtual std::string shading_stage(const Scene& scene) const = 0;
@@ -100,6 +101,8 @@ class SubsurfaceMethod {
   /// Radiant exitance at hits.
   /// in    body: prepared; must outlive the field, as the input
   virtual std::unique_ptr<Field> field(const RenderInput&, const Body&) const { return nullptr; }
+  /// The image, by a method that sums passes over it; none: the renderer shades the fields.
+  virtual std::optional<RenderResult> render_image(const PrecomputeInput&) const { return {}; }
 };
 
 const SubsurfaceMethod& method_of(Method method);

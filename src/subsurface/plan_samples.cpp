@@ -37,7 +37,7 @@ double widest_spacing(const DiffuseProfile& profile) {
   return widest;
 }
 
-void warn_of_few_samples(const GroupPlan& group, double wanted, std::vector<std::string>& warnings) {
+void warn_of_few_samples(const BodyPlan& group, double wanted, std::vector<std::string>& warnings) {
   if (wanted < kSuspiciouslyFew)
     warnings.push_back(
         fmt::format("{}: the mean free path of {:.4g} mm requires only {:.1f} samples on {:.4g} mm^2; light "
@@ -69,7 +69,7 @@ double fewest_samples(std::size_t bodies) {
   return std::clamp(kFewestOfAll / double(bodies), kFewestOfMany, kFewestSamples);
 }
 
-void choose_samples(const Scene& scene, double fewest, GroupPlan& group, std::vector<std::string>& warnings) {
+void choose_samples(const Scene& scene, double fewest, BodyPlan& group, std::vector<std::string>& warnings) {
   const Settings& settings = scene.settings;
   const double mean_free_path = group.smallest_mean_free_path,
                spacing = widest_spacing(make_diffuse_profile(scene.media[group.medium]));
@@ -99,13 +99,13 @@ void choose_samples(const Scene& scene, double fewest, GroupPlan& group, std::ve
   group.spacing = std::sqrt(group.area / double(group.samples));
 }
 
-std::string samples_text(const GroupPlan& group) {
+std::string samples_text(const BodyPlan& group) {
   const std::string count = grouped(group.samples) + (group.samples == 1 ? " sample" : " samples");
   if (group.reason == kTheMinimum) return fmt::format("{} ({})", count, group.reason);
   return fmt::format("{}, spacing {:.4g} mm: {}", count, group.spacing, group.reason);
 }
 
-std::string mean_free_path_text(const GroupPlan& group) {
+std::string mean_free_path_text(const BodyPlan& group) {
   if (!(group.smallest_mean_free_path > 0)) return "no mean free path (diffuse reflection)";
   return fmt::format("mean free path {:.4g} mm (smallest channel)", group.smallest_mean_free_path);
 }
@@ -114,19 +114,19 @@ double widest_cell(const Settings& settings) {
   return std::max(kWidestCell, settings.cell_size);
 }
 
-bool is_too_large_for_cells(const Settings& settings, const GroupPlan& group) {
+bool is_too_large_for_cells(const Settings& settings, const BodyPlan& group) {
   const double widest = widest_cell(settings) * group.smallest_mean_free_path;
   return widest > 0 && expected_cells(group.area, 0, widest) > kMostCells;
 }
 
-bool is_too_thin_for_cells(const GroupPlan& group) {
+bool is_too_thin_for_cells(const BodyPlan& group) {
   constexpr double kTooThin = .6;  // mean free paths; src/volume/README.md
   return group.thickness > 0 && group.thickness < kTooThin * group.smallest_mean_free_path;
 }
 
 // Cell size of volume_diffusion: as set, smaller to resolve the decay of light and thin bodies, and larger to
 // limit memory.
-void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
+void choose_cells(const Scene& scene, const World& world, BodyPlan& group,
                   std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 4, kSmallest = .25;
   constexpr double kOfVarying = .5;    // a cell has one medium, and light blurs detail below a mean free path
@@ -144,7 +144,7 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
   group.cell = std::max(group.cell, std::sqrt(group.area / most_faces));
   if (group.cell > widest_cell(scene.settings) * length)
     warnings.push_back(fmt::format(
-        "{}: light leaves within {:.3g} mm, but settings.max_samples limits the cells to {:.3g} mm",
+        "{}: light leaves within {:.3g} mm, but because of settings.max_samples the cells are {:.3g} mm wide",
         group.name, length, group.cell));
   if (is_too_thin_for_cells(group))
     warnings.push_back(
@@ -155,7 +155,7 @@ void choose_cells(const Scene& scene, const World& world, GroupPlan& group,
 
 // Divides a cell's edge to come close to the requested samples, with at least one sample per cell cut by the
 // surface.
-void choose_cut(const Settings& settings, double fewest, GroupPlan& group,
+void choose_cut(const Settings& settings, double fewest, BodyPlan& group,
                 std::vector<std::string>& warnings) {
   const double whole = kCutSamplesPerFace * group.area / (group.cell * group.cell);
   const double wanted = set_samples(settings, group.area).value_or(fewest);

@@ -18,7 +18,7 @@ Lighting lighting_of(const Scene& scene) {
   return all;
 }
 
-double needle_fraction(const World& world, const GroupPlan& body) {
+double needle_fraction(const World& world, const BodyPlan& body) {
   double needles = 0, area = 0;
   for (const std::uint32_t m : body.meshes) {
     needles += world.measures[m].needle_area;
@@ -37,7 +37,7 @@ std::string irradiance_stage(const Scene& scene, std::span<const Light> traced) 
     rays += std::size_t(shadow_rays(traced[l], scene.settings.light_samples));
   }
   const std::string drawn =
-      drawn_from > 0 ? fmt::format(", including importance-sampled lights out of {}", drawn_from) : "";
+      drawn_from > 0 ? fmt::format(", by importance sampling of {} lights", drawn_from) : "";
   return fmt::format("irradiance: {} light{}, {} shadow ray{} per sample{}", lights, lights == 1 ? "" : "s",
                      rays, rays == 1 ? "" : "s", drawn);
 }

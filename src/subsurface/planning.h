@@ -18,7 +18,7 @@ struct Lighting {
 };
 Lighting lighting_of(const Scene& scene);
 
-struct BodyPlanning {
+struct PlanningInput {
   const Scene& scene;
   const World& world;
   std::span<const Light> lights;  ///< recentred
@@ -35,7 +35,7 @@ struct BodyMemory {
 
 /// Fraction of the area in triangles far longer than high. Samples there stand in lines, each in its own
 /// block of the sampling grid.
-double needle_fraction(const World& world, const GroupPlan& body);
+double needle_fraction(const World& world, const BodyPlan& body);
 
 /// "irradiance: 2 lights, ..."
 std::string irradiance_stage(const Scene& scene, std::span<const Light> lights);

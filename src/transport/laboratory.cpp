@@ -65,7 +65,7 @@ struct SlabWatcher {
   void visit(const WalkState& walk, const BoundaryAhead&, const Crossing& crossing) {
     experiment.controls.visit(walk, crossing, tally.controls);
   }
-  void leave(const LeavingLight& light) {
+  void leave(const WalkExit& light) {
     const bool is_back = light.normal.z > 0;
     const TallyBins& bins = experiment.bins;
     FaceTally& face = is_back ? tally.back : tally.through;

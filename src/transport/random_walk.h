@@ -113,7 +113,7 @@ inline Vec3d scattered(const Vec3d& direction, double g, WalkNumbers& numbers) {
 }
 
 /// Light crossing the boundary from inside; it continues as refracted_outward(direction, normal, eta).
-struct LeavingLight {
+struct WalkExit {
   Vec3d position, direction;  ///< on the boundary; inside, before the refraction
   Vec3d normal;
   double weight = 0;
@@ -128,7 +128,7 @@ struct WalkEnd {
 
 /// Follows one walk to its end; `walk` then has its last state.
 /// in    body.ahead(position, direction): BoundaryAhead of a ray starting inside watcher.visit(walk, ahead,
-///       crossing): called before every flight watcher.leave(LeavingLight): called at every exit
+///       crossing): called before every flight watcher.leave(WalkExit): called at every exit
 ///       most_collisions: maximum, ending the walk unfinished
 /// out   mean over walks: exited weight + absorbed + unfinished = weight at the start
 template <class Body, class Watcher>
@@ -150,8 +150,8 @@ WalkEnd random_walk(const HomogeneousMedium& medium, const Body& body, std::uint
     watcher.visit(walk, ahead, crossing);
     const Flight flight = fly(medium, walk.weight, ahead, crossing, numbers);
     if (flight.leaving > 0)
-      watcher.leave(LeavingLight{walk.position + walk.direction * ahead.distance, walk.direction,
-                                 ahead.normal, flight.leaving, walk.collisions});
+      watcher.leave(WalkExit{walk.position + walk.direction * ahead.distance, walk.direction, ahead.normal,
+                             flight.leaving, walk.collisions});
     walk.position += walk.direction * flight.distance;
     walk.weight = flight.remaining;
     if (flight.collides) {

@@ -41,7 +41,8 @@ std::string allowed_path(const HttpRequest& request, const AccessRules& rules,
     return refuse(http::status::forbidden, "another host's name");
   if (!target.starts_with('/') || !same_secret(target.substr(1, slash - 1), rules.token))
     return refuse(http::status::forbidden, "wrong token");
-  if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed, "no GET");
+  if (request.method() != http::verb::get)
+    return refuse(http::status::method_not_allowed, "not a GET request");
   const std::string path = target.substr(slash);
   const bool is_socket = beast::websocket::is_upgrade(request);
   if (is_socket && text_of(request[http::field::origin]) != "http://" + host)

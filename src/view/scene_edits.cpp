@@ -48,9 +48,10 @@ void check_pixels(const Scene& scene) {
   const auto [x0, y0, x1, y1] = film.crop.value_or(std::array{0, 0, film.resolution[0], film.resolution[1]});
   const std::size_t pixels = std::size_t(x1 - x0) * std::size_t(y1 - y0);
   if (pixels > kMostViewPixels)
-    throw bad_file({}, "'film.resolution' is too large for the view",
-                   "at most " + std::to_string(kMostViewPixels) + " pixels, or a 'film.crop' of so many",
-                   std::to_string(pixels));
+    throw bad_file(
+        {}, "'film.resolution' is too large for the view",
+        "at most " + std::to_string(kMostViewPixels) + " pixels, or a 'film.crop' of at most as many",
+        std::to_string(pixels));
 }
 
 /// Rejects edits opening files: by their key, or by an object with one, in any spelling.

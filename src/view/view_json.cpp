@@ -55,7 +55,7 @@ Json preset_json(std::string_view name) {
           {"specular_ior", medium.eta}};
 }
 
-Json group_json(const Scene& scene, const GroupPlan& group) {
+Json group_json(const Scene& scene, const BodyPlan& group) {
   std::string text = fmt::format("{} of {}: {:.4g} mm², {}", group.name, scene.media[group.medium].name,
                                  group.area, mean_free_path_text(group));
   if (method_of(scene.settings.method).needs_samples()) text += "; " + samples_text(group);
@@ -98,7 +98,7 @@ std::string scene_text(const SceneEdits& edits, const std::string& command) {
 
 std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan) {
   Json groups = Json::array();
-  for (const GroupPlan& group : plan.groups) groups.push_back(group_json(scene, group));
+  for (const BodyPlan& group : plan.groups) groups.push_back(group_json(scene, group));
   return compact({{"is", "plan"},
                   {"revision", revision},
                   {"groups", groups},

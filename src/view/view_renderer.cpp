@@ -60,7 +60,7 @@ void check_memory(const Plan& plan) {
   const std::size_t taken = resident_memory(), left = available_memory();
   if (plan.bytes > taken && plan.bytes - taken > left)
     throw run_failed({}, "out of memory: the image needs about " + short_bytes(plan.bytes) +
-                             ", available: " + short_bytes(left + taken));
+                             "; available: " + short_bytes(left + taken));
 }
 
 ViewRenderer::ViewRenderer(ViewEvents events)

@@ -31,12 +31,12 @@ TEST(GltfBadInput, IsNamed) {
       {[](Json& j) { j["accessors"][0]["type"] = "VEC9"; },
        "test.gltf: accessors[0] is of the wrong type (expected VEC3, got VEC9)"},
       {[](Json& j) { j["accessors"][0]["componentType"] = 5130; },
-       "test.gltf: accessors[0] has a componentType that is none of glTF"},
+       "test.gltf: accessors[0] has a componentType unknown to glTF"},
       {[](Json& j) { j["accessors"][0].erase("bufferView"), j["accessors"][0]["count"] = 1000000000; },
        "test.gltf: accessors[0] has no bufferView: its elements are 0 (expected at most 1048576 of them, got "
        "1000000000)"},
       {[](Json& j) { j["accessors"][1]["count"] = 23; },
-       "test.gltf: accessors[1] has the wrong number of normals (expected 24, as there are positions, got "
+       "test.gltf: accessors[1] has the wrong number of normals (expected 24, the number of positions, got "
        "23)"},
       {[](Json& j) { j["accessors"][2]["componentType"] = 5126; },
        "test.gltf: accessors[2] cannot hold indices"},
@@ -61,7 +61,8 @@ TEST(GltfBadInput, IsNamed) {
       {[](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 7; },
        "test.gltf: meshes[0].primitives[0].attributes.POSITION refers to nothing"},
       {[](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 0; },
-       "test.gltf: meshes[0].primitives[0].material refers to nothing (expected nothing: there is none, got "
+       "test.gltf: meshes[0].primitives[0].material refers to nothing (expected no index: the list is empty, "
+       "got "
        "0)"},
       {[](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 1; }, "test.gltf: contains no visible mesh"},
       {[](Json& j) { j["nodes"][0]["mesh"] = 5; }, "test.gltf: nodes[0].mesh refers to nothing"},

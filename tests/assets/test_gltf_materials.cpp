@@ -149,7 +149,7 @@ TEST(GltfMaterials, AnisotropyHasBothAlphas) {
   const Scene opaque = scene_of(cube_of(material).glb(), "a.glb");
   expect(opaque.shapes.at(0).gloss.value().roughness, opaque.shapes[0].gloss->grain);
   EXPECT_TRUE(imported(cube_of(material)).not_carried.empty());
-  EXPECT_TRUE(has(imported(cube_of(material)).translated, "about y, for its mesh has no TEXCOORD_0"));
+  EXPECT_TRUE(has(imported(cube_of(material)).translated, "around y, because its mesh has no TEXCOORD_0"));
   material["extensions"]["KHR_materials_volume"] = kVolume;
   material["extensions"]["KHR_materials_volume_scatter"] = {{"multiscatterColor", {.5, .5, .5}}};
   const Scene body = scene_of(cube_of(material).glb(), "a.glb");
@@ -174,7 +174,7 @@ TEST(GltfMaterials, ValuesOutOfRangeAreSaid) {
   EXPECT_EQ(scene_of(cube_of(material).glb(), "a.glb").media.at(0).eta, 1.5);
   volume.erase("attenuationDistance");
   EXPECT_TRUE(scene_of(cube_of(material).glb(), "a.glb").media.empty());
-  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "has no effect; treated as opaque"));
+  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "has no colour; treated as opaque"));
 }
 
 // Claim: primitives of one mesh that share a medium are one body, those of another node another. Fails if light stops

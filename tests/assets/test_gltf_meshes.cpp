@@ -147,7 +147,7 @@ TEST(GltfMeshes, WithoutNormalsIsToldAsFaceted) {
   EXPECT_FALSE(has(imported(asset).translated, "faceted"));
   asset.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
   EXPECT_TRUE(has(imported(asset).translated,
-                  "-> shape 'cube', faceted: it has no normals (\"normals\": \"smooth\" makes some)"));
+                  "-> shape 'cube', faceted: it has no normals (\"normals\": \"smooth\" computes them)"));
   EXPECT_EQ(scene_of(asset.glb(), "a.glb").shapes.at(0).normals, NormalMode::faceted);
 }
 

@@ -120,8 +120,8 @@ TEST(GltfPoses, BadSkinsAreNamed) {
             "a.glb: accessors[3] element 1 names no joint (expected below 1, got 1)");
   std::vector<float> weights = kOneJoint;
   weights[4] = -1;
-  EXPECT_TRUE(
-      error(kFirst, weights).starts_with("a.glb: accessors[4] element 1 is no weight (expected 0 or more"));
+  EXPECT_TRUE(error(kFirst, weights)
+                  .starts_with("a.glb: accessors[4] element 1 is not a weight (expected 0 or more"));
   EXPECT_TRUE(
       error(kFirst, kOneJoint, [](Json& j) {
         j["accessors"][3]["count"] = 3;
@@ -158,8 +158,9 @@ TEST(GltfPoses, WeightsMorph) {
   asset.json["nodes"][0]["weights"] = {0};
   expect_vertex(vertices_of(asset), {0, 2, 0});
   asset.json["nodes"][0]["weights"] = {1, 1};
-  EXPECT_TRUE(error_of(asset.glb(), "a.glb")
-                  .starts_with("a.glb: meshes[0].primitives[0] has not as many morph targets as weights"));
+  EXPECT_TRUE(
+      error_of(asset.glb(), "a.glb")
+          .starts_with("a.glb: meshes[0].primitives[0] does not have as many morph targets as weights"));
 }
 
 // Claim: EXT_mesh_gpu_instancing shows a mesh at each of its transforms, behind the node's own. Source: the extension.

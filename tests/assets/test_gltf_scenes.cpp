@@ -215,7 +215,7 @@ TEST(GltfScenes, WhatCannotBeShownIsSaid) {
   const ImportedAsset import = imported(asset);
   for (const char* line :
        {"meshes[0] primitives[1]: it has no triangles", "node 'flat': its transform is singular",
-        "extension 'KHR_xmp'", "extension 'EXT_unknown', which the asset requires"})
+        "extension 'KHR_xmp'", "extension 'EXT_unknown': required by the asset, but not supported"})
     EXPECT_TRUE(has(import.not_carried, line)) << line;
   EXPECT_EQ(import.not_carried.size(), 4u);
   EXPECT_EQ(scene_of(asset.glb(), "a.glb").shapes.size(), 1u);

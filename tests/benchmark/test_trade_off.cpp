@@ -12,11 +12,11 @@ namespace {
 // Tolerance: none. Fails if: a point that is as accurate but dearer stays, the order is that of the input, or
 // it goes on below the noise.
 TEST(TradeOff, ParetoFront) {
-  const std::vector<TradePoint> points{{0, 4, .01}, {1, 1, .1},  {2, 2, .1},
-                                       {3, 2, .05}, {4, 8, .02}, {5, 8, .005}};
+  const std::vector<MeasuredTrade> points{{0, 4, .01}, {1, 1, .1},  {2, 2, .1},
+                                          {3, 2, .05}, {4, 8, .02}, {5, 8, .005}};
   EXPECT_EQ(pareto_front(points), (std::vector<std::size_t>{1, 3, 0, 5}));
   EXPECT_TRUE(pareto_front({}).empty());
-  EXPECT_EQ(pareto_front(std::vector<TradePoint>{{0, 1, .1}, {1, 2, .004, true}, {2, 3, .0039, true}}),
+  EXPECT_EQ(pareto_front(std::vector<MeasuredTrade>{{0, 1, .1}, {1, 2, .004, true}, {2, 3, .0039, true}}),
             (std::vector<std::size_t>{0, 1}));
 }
 

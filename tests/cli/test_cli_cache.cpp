@@ -53,6 +53,15 @@ TEST(CliCache, WarmRunIsTheSame) {
   EXPECT_FALSE(is_all_from_the_cache(folder.render("seed.exr", {"--seed", "1"})));
 }
 
+// Claim: precompute keeps a scene's volume_diffusion, and a render of it takes the solution from the cache. Source: docs/frames.md.
+// Fails if: precompute solves for another method.
+TEST(CliCache, PrecomputeSolvesVolumeDiffusion) {
+  const CachedScene folder;
+  const std::string method = "settings.method=volume_diffusion";
+  ASSERT_EQ(run_program({"precompute", folder.scene, "--cache", folder.cache, "--set", method}).exit_code, 0);
+  EXPECT_TRUE(is_all_from_the_cache(folder.render("a.exr", {"--set", method})));
+}
+
 // Claim: a cache folder that cannot be looked at is one line that names it and why. By hand: a name longer than file systems
 // have, and a link to itself. Fails if: a question about the folder throws an exception of the library's, in its words.
 TEST(CliCache, FolderThatCannotBeLookedAt) {

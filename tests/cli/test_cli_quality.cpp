@@ -206,7 +206,7 @@ TEST(CliQuality, TooLittleTimeIsSaid) {
   for (const char* method : {"hierarchical", "direct"}) {
     const Outcome outcome = folder.render({"--time-budget", "1ms", "--method", method});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, "0.001 s of CPU are too few") &&
+    EXPECT_TRUE(contains(outcome.err, "0.001 s of CPU is too small") &&
                 contains(outcome.err, "opaline renders "))
         << outcome.err;
   }

@@ -17,7 +17,6 @@
 #include "core/machine_memory.h"
 #include "fuzz_target.h"
 #include "input/load_scene.h"
-#include "methods/direct/direct.h"
 #include "mutate_scene.h"
 #include "session/session_records.h"
 
@@ -74,13 +73,6 @@ std::size_t peak_memory() {
   return 0;
 }
 
-RenderResult render(Session& session) {
-  session.prepare();
-  if (session.scene().settings.method != Method::direct) return session.render();
-  DirectState state;
-  return render_direct({session.scene(), session.world(), session.rays(), session.plan()}, state).picture;
-}
-
 /// What is wrong with the scene; empty if nothing is.
 std::string finding_of(const std::string& text, Progress& progress) {
   std::ofstream("/proc/self/clear_refs") << 5;  // the peak is the present from here on
@@ -91,7 +83,7 @@ std::string finding_of(const std::string& text, Progress& progress) {
   session.edit(parse_scene(text, "scene.json"));
   progress.phase = session.plan().bytes > kLargest ? Phase::too_large : Phase::rendering;
   if (progress.phase == Phase::too_large) return {};
-  const RenderResult result = render(session);
+  const RenderResult result = session.render();
   if (result.non_finite > 0) return std::to_string(result.non_finite) + " pixels are not finite";
   if (peak_memory() > before + session.plan().bytes + kSlack)
     return std::to_string((peak_memory() - before) >> 20) + " MB where the plan said " +

@@ -20,7 +20,7 @@ Medium open_marble() {
 }
 
 /// The bodies of a scene whose media leave their profiles open.
-std::vector<GroupPlan> bodies_of(Scene scene) {
+std::vector<BodyPlan> bodies_of(Scene scene) {
   const World world = make_world(scene);
   choose_models(scene, world);
   return make_plan(scene, world).groups;
@@ -31,7 +31,7 @@ BodyModel model_of(ShapeSource source, const Medium& medium = open_marble()) {
 }
 
 BodyShape shape_of(ShapeSource source) {
-  const GroupPlan body = bodies_of(single_shape(std::move(source), marble(), 500)).at(0);
+  const BodyPlan body = bodies_of(single_shape(std::move(source), marble(), 500)).at(0);
   return {body.area, body.thickness, body.alignment};
 }
 

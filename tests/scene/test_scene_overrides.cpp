@@ -106,7 +106,7 @@ TEST(SceneOverrides, Errors) {
       {"shapes.buny.medium=skin",
        set("shapes.buny.medium=skin"),
        0,
-       {"no shape 'buny' (did you mean 'bunny'?); there is: bunny, shape1"}},
+       {"no shape 'buny' (did you mean 'bunny'?); available: bunny, shape1"}},
       {"shapes.bunny.medium=cream",
        set("shapes.bunny.medium=cream"),
        0,
@@ -157,7 +157,7 @@ TEST(SceneOverrides, NamesMayHavePoints) {
   EXPECT_EQ(parse(scene, {"shapes.Cube.001.medium=wax"}).shapes[0].medium, 1u);
   EXPECT_EQ(parse(scene, {"media.'a=b.c'.preset=cream"}).media[2].name, "a=b.c");
   expect_fragments(error_of(scene, {"media.'wax.eta=1"}),
-                   {"a quoted name in the path has no closing quote", "path.\"name.with.points\".key=value"});
+                   {"a quoted name in the path has no closing quote", "path.\"name.with.dots\".key=value"});
 }
 
 // Claim: numbers of a list may begin with a point; a list that is no JSON is an error at its place, not a text. Source:

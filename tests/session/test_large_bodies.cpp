@@ -26,7 +26,7 @@ TEST(LargeBodies, AreLeftToTheTree) {
   const Scene scene = with_large_ball(Method::volume_diffusion);
   Session session;
   const Image mixed = picture_of(session, scene);
-  const std::vector<GroupPlan>& groups = session.plan().groups;
+  const std::vector<BodyPlan>& groups = session.plan().groups;
   ASSERT_EQ(groups.size(), 2u);
   EXPECT_EQ(groups[0].method, Method::volume_diffusion);
   EXPECT_EQ(groups[1].method, Method::hierarchical);

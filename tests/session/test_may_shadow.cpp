@@ -46,7 +46,7 @@ TEST(MayShadow, MissesNothing) {
       const RayScene rays(world);
       const PrecomputeInput input{bare, world, rays, with.plan, nullptr};
       const auto without =
-          light_samples(input, 0, with.bodies[0].surface.samples, recentred_lights(bare, world));
+          trace_transfers(input, 0, with.bodies[0].surface.samples, recentred_lights(bare, world));
       const bool same = without[0].weights == with.bodies[0].transfers[0].weights;
       const bool may = may_shadow(mesh_keys(with.world), 1, with.plan.groups[0],
                                   recentred_lights(scene, with.world)[0], with.world.unit);

@@ -35,7 +35,7 @@ TEST(StageVersions, ComputeWhatTheyDid) {
       .add(hierarchical_state(group).octree().flux_unit);
   EXPECT_EQ(hex(samples.key()), "2bde921ac9ab3e7ea7068780dc3773f4") << "raise kSamplesVersion";
   EXPECT_EQ(hex(light.key()), "d773558d8dda15dc22a0bd5371526867") << "raise kTransferVersion";
-  EXPECT_EQ(hex(tree.key()), "5dcdc5ad9465e646a9e7beda01c9aba0") << "raise kOctreeVersion";
+  EXPECT_EQ(hex(tree.key()), "5dcdc5ad9465e646a9e7beda01c9aba0") << "raise kTransmittedVersion";
 }
 
 Scene lit_ball(Method method) {

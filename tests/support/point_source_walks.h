@@ -29,7 +29,7 @@ struct ShellWatcher {
     if (walk.collisions == 0) return;
     collided[bins.ring_of(dot(walk.position, walk.position))] += walk.weight / albedo;
   }
-  void leave(const LeavingLight&) {}
+  void leave(const WalkExit&) {}
 };
 
 /// Mean fluence in a spherical shell.

@@ -143,7 +143,7 @@ void check_count(const GltfModel& gltf, std::uint32_t accessor, std::size_t coun
   if (count != part.positions.size())
     fail_at(gltf.path, record_name("accessors", accessor),
             std::string("has the wrong number of ") + what + "s",
-            std::to_string(part.positions.size()) + ", as there are positions", std::to_string(count));
+            std::to_string(part.positions.size()) + ", the number of positions", std::to_string(count));
 }
 
 void read_normals(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPart& part) {

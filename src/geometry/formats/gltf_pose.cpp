@@ -39,7 +39,7 @@ std::vector<Vec3d> target_vectors(const GltfModel& gltf, const GltfAttributes& t
   if (vectors.size() != vertices)
     fail_at(gltf.path, record_name("accessors", found->second),
             std::string("has the wrong number of vectors for the morph target ") + name,
-            std::to_string(vertices) + ", as there are positions", std::to_string(vectors.size()));
+            std::to_string(vertices) + ", the number of positions", std::to_string(vectors.size()));
   return vectors;
 }
 
@@ -47,8 +47,8 @@ void morph(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primiti
            GltfPart& part) {
   const std::vector<double>& weights = morph_weights(gltf, node);
   if (weights.size() != primitive.targets.size())
-    fail_at(gltf.path, place, "has not as many morph targets as weights", std::to_string(weights.size()),
-            std::to_string(primitive.targets.size()));
+    fail_at(gltf.path, place, "does not have as many morph targets as weights",
+            std::to_string(weights.size()), std::to_string(primitive.targets.size()));
   for (std::size_t t = 0; t < weights.size(); ++t) {
     if (weights[t] == 0) continue;
     const auto moved = [&](const char* name) {
@@ -111,7 +111,7 @@ class SkinBlend {
                   "below " + std::to_string(joints_.size()), std::to_string(std::size_t(indices[i][k])));
         if (!(shares[i][k] >= 0 && std::isfinite(shares[i][k])))
           fail_at(gltf_.path, record_name("accessors", weights),
-                  "element " + std::to_string(i) + " is no weight", "0 or more",
+                  "element " + std::to_string(i) + " is not a weight", "0 or more",
                   std::to_string(shares[i][k]));
         add(blended_[i], joints_[std::size_t(indices[i][k])], shares[i][k]);
         sums_[i] += shares[i][k];
@@ -148,7 +148,7 @@ class SkinBlend {
     std::vector<std::array<double, 4>> all = read_quadruples(gltf_, index);
     if (all.size() != blended_.size())
       fail_at(gltf_.path, record_name("accessors", index), "has the wrong number of vertices for the skin",
-              std::to_string(blended_.size()) + ", as there are positions", std::to_string(all.size()));
+              std::to_string(blended_.size()) + ", the number of positions", std::to_string(all.size()));
     return all;
   }
 

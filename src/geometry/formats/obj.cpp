@@ -166,7 +166,7 @@ class ObjReader {
     std::int64_t value = 0;
     if (!parse_integer(text, value) || value == 0 || value < -std::int64_t(count))
       throw bad_line(path_, line(at), std::string("bad ") + what + " index in a face",
-                     "1 to the number of them, or -1 to -" + std::to_string(count), quoted(text));
+                     "1 to their number, or -1 to -" + std::to_string(count), quoted(text));
     return value > 0 ? value - 1 : std::int64_t(count) + value;
   }
 
@@ -275,7 +275,7 @@ class ObjReader {
                                ": materials and textures (mtllib, usemtl) are ignored; the scene file "
                                "defines the material of a shape");
     if (has_polypaint_)
-      mesh_.warnings.push_back(path_ + ": polypaint (#MRGB) is ignored; save colours at vertices");
+      mesh_.warnings.push_back(path_ + ": polypaint (#MRGB) is ignored; export vertex colours instead");
     if (!colors_.empty()) give_vertex_colors(mesh_, colors_.linear(mesh_.positions.size()));
     if (has_groups_) give_smoothing();
     if (!corner_normals_.empty()) give_normals();

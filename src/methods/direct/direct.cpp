@@ -93,7 +93,7 @@ class DirectRenderer {
  private:
   static std::vector<EntrySampler> make_samplers(const DirectInput& input) {
     std::vector<EntrySampler> samplers;
-    for (const GroupPlan& group : input.plan.groups)
+    for (const BodyPlan& group : input.plan.groups)
       samplers.emplace_back(group, make_diffuse_profile(input.scene.media[group.medium], input.world.unit),
                             input.rays, input.world.diagonal, input.scene.settings.laboratory.entry_strategy);
     return samplers;

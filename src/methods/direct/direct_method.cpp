@@ -26,4 +26,9 @@ std::string DirectMethod::shading_stage(const Scene& scene) const {
   return fmt::format("direct, {} entry samples per pixel", (wanted + pass - 1) / pass * pass);
 }
 
+std::optional<RenderResult> DirectMethod::render_image(const PrecomputeInput& input) const {
+  DirectState state;
+  return render_direct({input.scene, input.world, input.rays, input.plan, input.monitor}, state).picture;
+}
+
 }  // namespace opaline

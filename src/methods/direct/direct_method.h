@@ -14,6 +14,7 @@ class DirectMethod : public SubsurfaceMethod {
   double seconds_of_pixel(const Scene& scene, const Lighting& lighting) const override;
   std::string bounces_stage() const override;
   std::string shading_stage(const Scene& scene) const override;
+  std::optional<RenderResult> render_image(const PrecomputeInput& input) const override;
 };
 
 }  // namespace opaline

@@ -50,7 +50,7 @@ double rescaled(double u, double begin, double share) {
 
 }  // namespace
 
-EntrySampler::EntrySampler(const GroupPlan& plan, const DiffuseProfile& profile, const RayScene& rays,
+EntrySampler::EntrySampler(const BodyPlan& plan, const DiffuseProfile& profile, const RayScene& rays,
                            double diagonal, EntryStrategy strategy)
     : meshes_(plan.meshes),
       profile_(carried_part(profile, diagonal)),

@@ -42,7 +42,7 @@ struct Entry {
 /// locally: the exit itself is their entry.
 class EntrySampler {
  public:
-  EntrySampler(const GroupPlan& plan, const DiffuseProfile& profile, const RayScene& rays, double diagonal,
+  EntrySampler(const BodyPlan& plan, const DiffuseProfile& profile, const RayScene& rays, double diagonal,
                EntryStrategy strategy);
 
   const std::vector<std::uint32_t>& meshes() const { return meshes_; }

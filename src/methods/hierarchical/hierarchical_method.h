@@ -9,9 +9,9 @@ namespace opaline {
 class HierarchicalMethod : public SubsurfaceMethod {
  public:
   bool may_use_surface_cache() const override { return true; }
-  void plan(const BodyPlanning& input, GroupPlan& body, std::vector<std::string>& warnings) const override;
-  BodyMemory memory(const BodyPlanning& input, const GroupPlan& body) const override;
-  double seconds(const Scene& scene, const GroupPlan& body, const Lighting& lighting) const override;
+  void plan(const PlanningInput& input, BodyPlan& body, std::vector<std::string>& warnings) const override;
+  BodyMemory memory(const PlanningInput& input, const BodyPlan& body) const override;
+  double seconds(const Scene& scene, const BodyPlan& body, const Lighting& lighting) const override;
   double samples_with_shadow_rays(const Plan& plan) const override;
   void list_stages(const Scene& scene, std::vector<std::string>& stages) const override;
   std::string shading_stage(const Scene&) const override { return "hierarchical"; }

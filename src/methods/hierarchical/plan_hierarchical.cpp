@@ -17,7 +17,7 @@ constexpr std::size_t kBytesOfSample = 191, kBytesOfLight = 4, kBytesOfBounces =
 constexpr double kBytesOfNeedle = 250;
 
 /// Warns of a body thinner than its sample spacing.
-void warn_of_thin_body(const GroupPlan& body, std::vector<std::string>& warnings) {
+void warn_of_thin_body(const BodyPlan& body, std::vector<std::string>& warnings) {
   const double thickness = body.thickness;
   if (!(thickness > 0 && thickness < body.spacing)) return;
   warnings.push_back(fmt::format(
@@ -26,7 +26,7 @@ void warn_of_thin_body(const GroupPlan& body, std::vector<std::string>& warnings
       body.name, thickness, body.spacing, body.area / (thickness * thickness)));
 }
 
-void warn_of_near_lights(const Scene& scene, const World& world, const GroupPlan& body,
+void warn_of_near_lights(const Scene& scene, const World& world, const BodyPlan& body,
                          std::vector<std::string>& warnings) {
   for (const Light& light : scene.lights) {
     if (emission(light) == Rgb{}) continue;
@@ -43,7 +43,8 @@ std::string evaluation_stage(const Settings& settings) {
   const std::string promise = fmt::format("error below {:.3g} % of the exact sum", 100 * settings.tolerance);
   switch (settings.evaluator) {
     case EvaluatorKind::automatic:
-      return "evaluation: dual tree at shading points, or a surface cache if that needs fewer; " + promise;
+      return "evaluation: dual tree at shading points, or a surface cache if that needs fewer points; " +
+             promise;
     case EvaluatorKind::dual_tree:
       return "evaluation: dual tree at shading points; " + promise;
     case EvaluatorKind::surface_cache:
@@ -59,14 +60,14 @@ std::string evaluation_stage(const Settings& settings) {
 
 }  // namespace
 
-void HierarchicalMethod::plan(const BodyPlanning& input, GroupPlan& body,
+void HierarchicalMethod::plan(const PlanningInput& input, BodyPlan& body,
                               std::vector<std::string>& warnings) const {
   choose_samples(input.scene, input.fewest_samples, body, warnings);
   warn_of_near_lights(input.scene, input.world, body, warnings);
   warn_of_thin_body(body, warnings);
 }
 
-BodyMemory HierarchicalMethod::memory(const BodyPlanning& input, const GroupPlan& body) const {
+BodyMemory HierarchicalMethod::memory(const PlanningInput& input, const BodyPlan& body) const {
   BodyMemory memory{.evaluated_samples = body.samples};
   memory.kept = body.samples * (kBytesOfSample + kBytesOfLight * input.lights.size() +
                                 (bounces_of(input.scene) > 0 ? kBytesOfBounces : 0));
@@ -76,8 +77,7 @@ BodyMemory HierarchicalMethod::memory(const BodyPlanning& input, const GroupPlan
   return memory;
 }
 
-double HierarchicalMethod::seconds(const Scene& scene, const GroupPlan& body,
-                                   const Lighting& lighting) const {
+double HierarchicalMethod::seconds(const Scene& scene, const BodyPlan& body, const Lighting& lighting) const {
   constexpr double kSample = 8e-6;       // placed, in the tree
   constexpr double kGather = 6e-5;       // light from other bodies at a sample
   constexpr double kGatherAlone = 1e-5;  // the same where there is one body
@@ -87,7 +87,7 @@ double HierarchicalMethod::seconds(const Scene& scene, const GroupPlan& body,
 
 double HierarchicalMethod::samples_with_shadow_rays(const Plan& plan) const {
   double samples = 0;
-  for (const GroupPlan& body : plan.groups) samples += double(body.samples);
+  for (const BodyPlan& body : plan.groups) samples += double(body.samples);
   return samples;
 }
 

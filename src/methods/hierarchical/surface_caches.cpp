@@ -165,7 +165,7 @@ bool is_worth_beginning(const PrecomputeInput& input, const Body& group, std::si
              kBegin / kMost * double(most_places);
 }
 
-std::size_t vertices_of(const GroupPlan& group, const World& world) {
+std::size_t vertices_of(const BodyPlan& group, const World& world) {
   std::size_t vertices = 0;
   for (const std::uint32_t mesh : group.meshes) vertices += world.meshes[mesh].positions.size();
   return vertices;
@@ -173,12 +173,12 @@ std::size_t vertices_of(const GroupPlan& group, const World& world) {
 
 }  // namespace
 
-std::size_t most_wanted_places(const GroupPlan& group, const World& world) {
+std::size_t most_wanted_places(const BodyPlan& group, const World& world) {
   constexpr std::size_t kOfVertex = 4, kOfSample = 16;
   return kOfVertex * vertices_of(group, world) + kOfSample * group.samples;
 }
 
-std::size_t expected_cache_places(const GroupPlan& group, const World& world) {
+std::size_t expected_cache_places(const BodyPlan& group, const World& world) {
   constexpr std::size_t kOfVertex = 6, kOfSample = 2;  // measured by bench_plan, beside shadow edges
   return std::min(most_wanted_places(group, world),
                   kOfVertex * vertices_of(group, world) + kOfSample * group.samples);

@@ -10,7 +10,7 @@
 
 namespace opaline {
 
-BodyMemory VolumeMethod::memory(const BodyPlanning& input, const GroupPlan& body) const {
+BodyMemory VolumeMethod::memory(const PlanningInput& input, const BodyPlan& body) const {
   // Bytes, fitted to bench_plan: per sample; its search structure, fits and exitance; per channel, counts of
   // a pass's chunks; per light, sums.
   constexpr std::size_t kSample = 191, kWalkedCell = 300, kWalkedChannel = 64, kWalkSums = 24;
@@ -20,7 +20,7 @@ BodyMemory VolumeMethod::memory(const BodyPlanning& input, const GroupPlan& body
                                               walked_mean_free_path(input.scene, input.world, body)))};
 }
 
-double VolumeMethod::seconds(const Scene& scene, const GroupPlan& body, const Lighting& lighting) const {
+double VolumeMethod::seconds(const Scene& scene, const BodyPlan& body, const Lighting& lighting) const {
   constexpr double kWalk = 1e-5;
   constexpr double kSmallestWalks = 32;  // a sample, before an error is estimated
   return double(body.samples) * kWalk * 3 * std::clamp(lighting.lights, 1., 4.) *

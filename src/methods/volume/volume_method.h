@@ -14,8 +14,8 @@ class VolumeMethod : public SubsurfaceMethod {
   std::optional<double> expected_error(const BodyModel&) const override { return {}; }
   bool supports_bounces() const override { return false; }
   bool separates_lights() const override { return false; }
-  BodyMemory memory(const BodyPlanning& input, const GroupPlan& body) const override;
-  double seconds(const Scene& scene, const GroupPlan& body, const Lighting& lighting) const override;
+  BodyMemory memory(const PlanningInput& input, const BodyPlan& body) const override;
+  double seconds(const Scene& scene, const BodyPlan& body, const Lighting& lighting) const override;
   std::string light_stage(const Scene& scene, std::span<const Light> lights) const override;
   std::string shading_stage(const Scene&) const override { return "cells, interpolated"; }
   const char* stage() const override { return "random walks"; }

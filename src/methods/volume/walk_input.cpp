@@ -40,7 +40,7 @@ double least_walked(const World& world, std::span<const std::uint32_t> meshes) {
 
 }  // namespace
 
-double walked_mean_free_path(const Scene& scene, const World& world, const GroupPlan& group) {
+double walked_mean_free_path(const Scene& scene, const World& world, const BodyPlan& group) {
   const Medium& medium = scene.media[group.medium];
   const DiffuseProfile profile = make_diffuse_profile(medium, world.unit);
   const Rgb absorbed = reduced_absorption(medium);

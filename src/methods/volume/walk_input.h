@@ -17,6 +17,6 @@ namespace opaline {
 VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span<const Light> lights);
 
 /// Smallest 1/sigma_t of the walks' channels, world units.
-double walked_mean_free_path(const Scene& scene, const World& world, const GroupPlan& group);
+double walked_mean_free_path(const Scene& scene, const World& world, const BodyPlan& group);
 
 }  // namespace opaline

@@ -14,12 +14,12 @@
 namespace opaline {
 namespace {
 
-bool varies(const Scene& scene, const GroupPlan& body) {
+bool varies(const Scene& scene, const BodyPlan& body) {
   return varies_inside(scene.media[body.medium]);
 }
 
 /// Why cells do not suit a body; empty: they do.
-std::string reason_against_cells(const Scene& scene, const World& world, const GroupPlan& body) {
+std::string reason_against_cells(const Scene& scene, const World& world, const BodyPlan& body) {
   if (!(body.smallest_mean_free_path > 0))
     return "the medium has no mean free path, so the body reflects diffusely";
   const auto is_open = [&](std::uint32_t mesh) { return world.reports[mesh].open_edges > 0; };
@@ -32,7 +32,7 @@ std::string reason_against_cells(const Scene& scene, const World& world, const G
 }
 
 /// Warns if closing the mesh would make cells applicable to the body.
-void warn_of_open_mesh(const Scene& scene, const GroupPlan& body, std::vector<std::string>& warnings) {
+void warn_of_open_mesh(const Scene& scene, const BodyPlan& body, std::vector<std::string>& warnings) {
   if (body.thickness > 0 || !(body.smallest_mean_free_path > 0)) return;
   const bool is_filled = std::ranges::all_of(body.meshes, [&](std::uint32_t mesh) {
     const auto* file = std::get_if<MeshFile>(&scene.shapes[mesh].source);
@@ -44,7 +44,7 @@ void warn_of_open_mesh(const Scene& scene, const GroupPlan& body, std::vector<st
 }
 
 /// CPU seconds to trace the light transmitted at a sample from one direction.
-double seconds_of_entry(const Medium& medium, const GroupPlan& body) {
+double seconds_of_entry(const Medium& medium, const BodyPlan& body) {
   constexpr double kEntry = 2e-7;      // per direction of incident light at a sample
   constexpr double kEntryCell = 9e-8;  // per cell crossed by this light
   constexpr double kMostCrossed = 50;  // cells far inside are larger
@@ -54,7 +54,7 @@ double seconds_of_entry(const Medium& medium, const GroupPlan& body) {
 
 }  // namespace
 
-void VolumeDiffusionMethod::plan(const BodyPlanning& input, GroupPlan& body,
+void VolumeDiffusionMethod::plan(const PlanningInput& input, BodyPlan& body,
                                  std::vector<std::string>& warnings) const {
   body.reason_against_method = reason_against_cells(input.scene, input.world, body);
   if (!body.reason_against_method.empty()) {
@@ -66,7 +66,7 @@ void VolumeDiffusionMethod::plan(const BodyPlanning& input, GroupPlan& body,
   choose_cut(input.scene.settings, input.fewest_samples, body, warnings);
 }
 
-BodyMemory VolumeDiffusionMethod::memory(const BodyPlanning& input, const GroupPlan& body) const {
+BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyPlan& body) const {
   // Bytes, fitted to bench_plan: per cell cutting the surface, exitance and error during the fits; per light,
   // weights; with bounces, weights for a second fit, the fit, and the gathered light.
   constexpr std::size_t kCutSample = 640, kLight = 4, kBounces = 500;
@@ -81,7 +81,7 @@ BodyMemory VolumeDiffusionMethod::memory(const BodyPlanning& input, const GroupP
   return memory;
 }
 
-double VolumeDiffusionMethod::seconds(const Scene& scene, const GroupPlan& body,
+double VolumeDiffusionMethod::seconds(const Scene& scene, const BodyPlan& body,
                                       const Lighting& lighting) const {
   constexpr double kCutSample = 8e-6;    // cut, and its fit
   constexpr double kCell = 4e-6;         // made and solved, three channels
@@ -94,7 +94,7 @@ double VolumeDiffusionMethod::seconds(const Scene& scene, const GroupPlan& body,
               solutions * lighting.directions * seconds_of_entry(scene.media[body.medium], body));
 }
 
-std::string VolumeDiffusionMethod::body_stage(const GroupPlan& body) const {
+std::string VolumeDiffusionMethod::body_stage(const BodyPlan& body) const {
   return fmt::format("diffusion: about {:.2g} cells in {}, {:.3g} mm at the surface ({:.3g} mean free paths)",
                      expected_cells(body.area, body.thickness, body.cell), body.name, body.cell,
                      body.cell / body.smallest_mean_free_path);

@@ -13,10 +13,10 @@ class VolumeDiffusionMethod : public SubsurfaceMethod {
   std::optional<double> expected_error(const BodyModel& model) const override {
     return model.expected_error_of_diffusion;
   }
-  void plan(const BodyPlanning& input, GroupPlan& body, std::vector<std::string>& warnings) const override;
-  BodyMemory memory(const BodyPlanning& input, const GroupPlan& body) const override;
-  double seconds(const Scene& scene, const GroupPlan& body, const Lighting& lighting) const override;
-  std::string body_stage(const GroupPlan& body) const override;
+  void plan(const PlanningInput& input, BodyPlan& body, std::vector<std::string>& warnings) const override;
+  BodyMemory memory(const PlanningInput& input, const BodyPlan& body) const override;
+  double seconds(const Scene& scene, const BodyPlan& body, const Lighting& lighting) const override;
+  std::string body_stage(const BodyPlan& body) const override;
   std::string shading_stage(const Scene&) const override { return "cells, interpolated"; }
   const char* stage() const override { return "diffusion"; }
   void prepare(BodyStages& stages) const override;

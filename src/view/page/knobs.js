@@ -113,7 +113,7 @@ export class Knobs {
     const select = make("select", {}, ...Object.entries(kForms).map(([key, {name: text}]) => make("option", {value: key, textContent: text})));
     select.value = form;
     select.onchange = () => this.set({[path]: this.converted(name, select.value)}, newStroke());
-    return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "given by"}), select),
+    return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "defined by"}), select),
       ...[...kForms[form].keys, "specular_ior", "specular_roughness", "specular_weight", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
   }
 

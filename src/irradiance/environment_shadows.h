@@ -13,9 +13,9 @@ namespace opaline {
 
 /// Visibility of each block of an environment map from neighbouring points. The points form two halves; the
 /// rays of one half predict the visibility for the other, so a prediction is independent of its own rays.
-class RoomShadows {
+class EnvironmentShadows {
  public:
-  explicit RoomShadows(const EnvironmentPicture& room);
+  explicit EnvironmentShadows(const EnvironmentPicture& environment);
 
   /// A ray of a half towards a block.
   void add(std::size_t half, std::size_t block, bool is_lit) {
@@ -40,7 +40,7 @@ class RoomShadows {
   };
   void spread(std::vector<float>& counts);
 
-  const EnvironmentPicture& room_;
+  const EnvironmentPicture& environment_;
   std::array<Half, 2> halves_;
   std::vector<float> spread_;
 };

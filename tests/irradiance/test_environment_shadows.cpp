@@ -69,7 +69,7 @@ std::vector<Rgb> irradiance_of(const LitWorld& scene, std::span<const SurfacePoi
 // an error of 3 % rms in each channel. Source: what nothing shadows is known but for what is near the horizon; measured,
 // 1.7 to 2.3 %, and by the rays alone 3.6 to 4.2 %. Fails when: rays are not held against what they would bring, or those
 // of each camera ray by themselves.
-TEST(RoomLight, OfAnOpenFloorIsKnown) {
+TEST(EnvironmentShadows, OfAnOpenFloorIsKnown) {
   const LitWorld scene(world_of({SphereShape{{0, -500, 0}, 10}}));
   const std::vector<SurfacePoint> places(200, floor_at(scene, 0, 0));
   const std::vector<Rgb> few = irradiance_of(scene, places, 4, 1);
@@ -84,7 +84,7 @@ TEST(RoomLight, OfAnOpenFloorIsKnown) {
 // Claim: beside a body that hides some lamps, the mean over many pixels has no bias, whatever their colours. Source: the
 // ratio of two sums over 64 rays is biased by less than the product of their errors. Tolerance: 4 standard errors and
 // .4 %. Fails when: the part of a room that reaches a point is taken from all channels together, or from too few rays.
-TEST(RoomLight, BesideABodyHasNoBias) {
+TEST(EnvironmentShadows, BesideABodyHasNoBias) {
   const LitWorld scene(world_of({SphereShape{{0, 6, 0}, 6}, BoxShape{{8, 0, -20}, {9, 14, 20}}}));
   for (const auto& [x, z] :
        {std::array{2., 0.}, std::array{5., 3.}, std::array{-7., 2.}, std::array{7.9, 0.}}) {
@@ -106,7 +106,7 @@ TEST(RoomLight, BesideABodyHasNoBias) {
 // rays; measured, .5 to .84 of the error by themselves, for lamps are many. Tolerance of the mean: 4 standard errors and
 // .3 %. Fails when:
 // a pixel's own rays tell what it expects, or the picture is not asked for what its hidden blocks take.
-TEST(RoomLight, PixelsTellEachOtherOfShadows) {
+TEST(EnvironmentShadows, PixelsTellEachOtherOfShadows) {
   const LitWorld scene(world_of({SphereShape{{0, 6, 0}, 6}, BoxShape{{8, 0, -20}, {9, 14, 20}}}));
   for (const auto& [x, z] : {std::array{2., 0.}, std::array{5., 3.}, std::array{7., 0.}}) {
     SCOPED_TRACE(testing::Message() << x << ' ' << z);
@@ -134,7 +134,7 @@ TEST(RoomLight, PixelsTellEachOtherOfShadows) {
 // for 16 shadow rays where the lobe is as wide as the lamp. Source: of four directions one is traced, by how much of it the
 // lobe mirrors, and stands for all; measured, 12 to 18 %, and with a ray for each of 16 directions 32 to 45 %. Tolerance of
 // the mean: 4 standard errors and 1 %. Fails when: a direction is not weighed by its chance, or all are alike.
-TEST(RoomLight, LampsInALobe) {
+TEST(EnvironmentShadows, LampsInALobe) {
   const LitWorld scene(world_of({SphereShape{{0, -500, 0}, 10}}));
   const std::vector<Light> lights = channels_of_room();
   constexpr std::size_t kPoints = 500;
@@ -173,8 +173,9 @@ TEST(RoomLight, LampsInALobe) {
     for (const double sum : mirrored_by(16, lobes, kPoints)) part.add(sum / truth);
     EXPECT_NEAR(part.mean(), 1, 4 * part.error() + .01);
     EXPECT_LT(std::sqrt(part.variance()), .25);
-    const RoomLobe in_room = room_lobe(std::get<EnvironmentLight>(lights[1].source), {0, 1, 0}, lobes[0]);
-    const std::vector<Lobe> known(kPoints, Lobe{towards, kAlpha, &in_room});
+    const EnvironmentLobe in_environment =
+        environment_lobe(std::get<EnvironmentLight>(lights[1].source), {0, 1, 0}, lobes[0]);
+    const std::vector<Lobe> known(kPoints, Lobe{towards, kAlpha, &in_environment});
     Mean by_lobe;
     for (const double sum : mirrored_by(4, known, kPoints)) by_lobe.add(sum / truth);
     EXPECT_NEAR(by_lobe.mean(), 1, 4 * by_lobe.error() + .01);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exitance/cut_surface.h"
+#include "exitance/make_patches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,8 +127,8 @@ std::uint32_t segments_of(const Mesh& mesh, std::uint32_t triangle, double longe
   return std::uint32_t(std::clamp(std::ceil(side / longest), 1.0, kMostSegments));
 }
 
-std::vector<Vec3f> cut_surface(const World& world, std::span<const std::uint32_t> meshes, double longest,
-                               SurfaceCache& cache) {
+std::vector<Vec3f> make_patches(const World& world, std::span<const std::uint32_t> meshes, double longest,
+                                SurfaceCache& cache) {
   std::vector<Vec3f> normals;
   cache.splits.resize(world.meshes.size());
   for (const std::uint32_t m : meshes)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "irradiance/room_shadows.h"
+#include "irradiance/environment_shadows.h"
 
 #include <algorithm>
 #include <numeric>
@@ -13,16 +13,16 @@ constexpr float kOfAround = 1, kOfAll = .5f;
 
 }  // namespace
 
-RoomShadows::RoomShadows(const EnvironmentPicture& room) : room_(room) {
+EnvironmentShadows::EnvironmentShadows(const EnvironmentPicture& environment) : environment_(environment) {
   for (Half& half : halves_) {
-    half.tried.resize(room.block_count());
-    half.lit.resize(room.block_count());
+    half.tried.resize(environment.block_count());
+    half.lit.resize(environment.block_count());
   }
 }
 
 // Sums over a square of blocks, periodic in the azimuth.
-void RoomShadows::spread(std::vector<float>& counts) {
-  const std::size_t columns = room_.block_columns(), rows = counts.size() / columns;
+void EnvironmentShadows::spread(std::vector<float>& counts) {
+  const std::size_t columns = environment_.block_columns(), rows = counts.size() / columns;
   spread_.assign(counts.size(), 0);
   for (std::size_t r = 0; r < rows; ++r) {
     const float* const row = &counts[r * columns];
@@ -39,7 +39,7 @@ void RoomShadows::spread(std::vector<float>& counts) {
       for (std::size_t c = 0; c < columns; ++c) counts[r * columns + c] += spread_[k * columns + c];
 }
 
-void RoomShadows::estimate(const std::array<bool, 2>& has_dark) {
+void EnvironmentShadows::estimate(const std::array<bool, 2>& has_dark) {
   for (std::size_t h = 0; h < 2; ++h) {
     Half& half = halves_[h];
     half.open.assign(half.tried.size(), 1);
@@ -56,12 +56,12 @@ void RoomShadows::estimate(const std::array<bool, 2>& has_dark) {
   }
 }
 
-RgbF RoomShadows::irradiance(std::size_t half, const Vec3d& normal) {
+RgbF EnvironmentShadows::irradiance(std::size_t half, const Vec3d& normal) {
   const std::size_t nearest = EnvironmentPicture::nearest_normal(normal);
   auto& known = halves_[1 - half].known;
   auto entry = std::ranges::find(known, nearest, [](const auto& k) { return k.first; });
   if (entry == known.end())
-    entry = known.insert(entry, {nearest, room_.unshadowed(nearest, halves_[1 - half].open)});
+    entry = known.insert(entry, {nearest, environment_.unshadowed(nearest, halves_[1 - half].open)});
   return entry->second.at(normal);
 }
 
