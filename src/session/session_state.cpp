@@ -204,8 +204,8 @@ void Session::State::prepare(Monitor* monitor) {
     return is_needed;
   });
   std::vector<BodyStages> bodies = body_stages(input, lights);
-  for (std::size_t m = kMethodNames.size();
-       m-- > 0;) {  // volume_diffusion before bodies falling back to profiles
+  // From the last method to the first: volume_diffusion leaves some bodies to hierarchical.
+  for (std::size_t m = kMethodNames.size(); m-- > 0;) {
     const auto is_of = [&](const BodyStages& stages) { return stages.body.plan.method == Method(m); };
     if (std::ranges::none_of(bodies, is_of)) continue;
     const SubsurfaceMethod& method = method_of(Method(m));
