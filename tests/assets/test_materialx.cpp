@@ -224,9 +224,9 @@ TEST(MaterialX, MistakesAreNamed) {
   EXPECT_EQ(MaterialFolder("<materialx/>").error(),
             "a.mtlx: has no such surface (expected a file with an open_pbr_surface or standard_surface)");
   EXPECT_EQ(MaterialFolder(surface("<input name=\"subsurface_color\" value=\"1, x, 1\"/>")).error(),
-            "a.mtlx: material 's': bad input 'subsurface_color' (expected one number, or three with commas "
-            "between, got "
-            "'1, x, 1')");
+            "a.mtlx: material 's': bad input 'subsurface_color' (expected one number, or three separated by "
+            "commas, "
+            "got '1, x, 1')");
   EXPECT_EQ(MaterialFolder(surface("<input name=\"specular_ior\" value=\"99\"/>")).error(),
             "a.mtlx: material 's': bad input 'specular_ior' (expected a number from 0.1 to 10, got 99)");
 }

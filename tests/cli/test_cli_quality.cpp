@@ -168,13 +168,13 @@ INSTANTIATE_TEST_SUITE_P(Options, CliAgainBy,
                          [](const auto& choosing) { return choosing.param.name; });
 
 // Claim: stages that the trials of --target-error leave to the image are named on the trials' line, and a stage without a
-// cost has no line. The rays never depend on the chosen number of samples. Fails if: a reused stage has a line.
+// cost has no line. Fails if: a reused stage has a line.
 TEST(CliQuality, StagesOfTheTrialsAreNamedWithThem) {
   const QualityFolder folder;
   const Outcome render = folder.render({"--target-error", ".02"});
   ASSERT_EQ(render.exit_code, 0) << render.err;
-  EXPECT_TRUE(contains(closing_line(render.out, "choosing"), "   with rays, ")) << render.out;
-  EXPECT_EQ(closing_line(render.out, "rays"), "") << render.out;
+  EXPECT_TRUE(contains(closing_line(render.out, "choosing"), ", irradiance, octree")) << render.out;
+  EXPECT_EQ(closing_line(render.out, "irradiance"), "") << render.out;
 }
 
 // Claim: spacings are repeated in the scene's own units where several groups have them. Fails if: they are in

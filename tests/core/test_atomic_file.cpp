@@ -87,8 +87,8 @@ TEST(AtomicFile, UnwritableIsSaidAtOnce) {
       {folder.file("missing/a.exr"), "no such folder"},
       {folder.file("plain/a.exr"), "Not a directory"},
       {folder.path.string(), "is a folder"},
-      {folder.path.string() + "/", "not a file name"},
-      {"", "not a file name"},
+      {folder.path.string() + "/", "no file name"},
+      {"", "no file name"},
       {"/dev/null", "not a regular file"},
       {folder.file(std::string(300, 'n')), "File name too long"},
   };

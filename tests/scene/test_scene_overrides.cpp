@@ -114,7 +114,7 @@ TEST(SceneOverrides, Errors) {
       {"film.resolution.2=64", set("film.resolution.2=64"), 0, {"no element '2'", "an index below 2"}},
       {"shapes.shpae1.medium=skin", set("shapes.shpae1.medium=skin"), 0, {"did you mean 'shape1'?"}},
       {"lights.lihgt0.intensity=1", set("lights.lihgt0.intensity=1"), 0, {"did you mean 'light0'?"}},
-      {"lights.1.intensity=1", set("lights.1.intensity=1"), 0, {"no light '1'", "there is: light0"}},
+      {"lights.1.intensity=1", set("lights.1.intensity=1"), 0, {"no light '1'", "available: light0"}},
       {"lights.-1.intensity=1", set("lights.-1.intensity=1"), 0, {"no light '-1'"}},
       {"shapes.0.file.x=1", set("shapes.0.file.x=1"), 0, {"'shapes.0.file' is a single value"}},
       {"media.marble", set("media.marble"), 0, {"no value given", "path.to.key=value"}},
