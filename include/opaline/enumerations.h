@@ -12,7 +12,7 @@ namespace opaline {
 
 using NameList = std::span<const std::string_view>;
 
-/// Radial diffuse reflectance profile R_d(r) of a medium; in the order of ChannelProfile (diffuse_profile.h).
+/// Radial diffuse reflectance profile R_d(r) of a medium; in the order of ChannelProfile after its monostate (diffuse_profile.h).
 enum class ProfileKind {
   dipole,
   normalized_diffusion,  ///< its length by NormalizedDiffusionFit

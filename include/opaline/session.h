@@ -148,7 +148,7 @@ class Session {
   /// Indirect light of the last image with bounces, for any view and light; null: none for these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
   const SessionWork& work() const;  ///< work of the last edit and since
-  /// Costs of rays, sampling, irradiance, octree, and of exitance with surface caches.
+  /// Costs of the stages that ran.
   const std::vector<StageCost>& costs() const;
 
  private:

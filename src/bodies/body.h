@@ -20,7 +20,7 @@ namespace opaline {
 
 struct HeldView;
 
-/// Result of a method for a body, opaque to all other code (methods/).
+/// Result of a method for a body; its type is in the method's folder (methods/).
 struct MethodState {
   virtual ~MethodState() = default;
 };

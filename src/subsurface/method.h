@@ -22,8 +22,7 @@ namespace opaline {
 /// CPU time of a shadow ray, s, by bench_plan.
 inline constexpr double kSecondsOfShadowRay = 1e-7;
 
-/// Method of subsurface transport, one folder in methods/. Its results for a body are in Body::states, read
-/// by no other code.
+/// Method of subsurface transport, one folder in methods/. Its results for a body are in Body::states.
 class SubsurfaceMethod {
  public:
   virtual ~SubsurfaceMethod() = default;

@@ -18,7 +18,7 @@ struct RenderInput {
   const Scene& scene;
   const World& world;
   const RayScene& rays;
-  std::span<const Body> groups = {};  ///< bodies from the precompute; not needed by Method::lambert
+  std::span<const Body> groups = {};  ///< bodies from the precompute; empty for methods without samples
   Monitor* monitor = nullptr;
   HeldView* view = nullptr;  ///< cached view of an earlier image, or new; at most kMostHeldBytes
   /// Indirect light gathered for this or another view of the same surfaces under the same light; null: render

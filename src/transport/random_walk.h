@@ -127,8 +127,9 @@ struct WalkEnd {
 };
 
 /// Follows one walk to its end; `walk` then has its last state.
-/// in    body.ahead(position, direction): BoundaryAhead of a ray starting inside watcher.visit(walk, ahead,
-///       crossing): called before every flight watcher.leave(WalkExit): called at every exit
+/// in    body.ahead(position, direction): BoundaryAhead of a ray starting inside
+///       watcher.visit(walk, ahead, crossing): called before every flight
+///       watcher.leave(WalkExit): called at every exit
 ///       most_collisions: maximum, ending the walk unfinished
 /// out   mean over walks: exited weight + absorbed + unfinished = weight at the start
 template <class Body, class Watcher>

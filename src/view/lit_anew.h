@@ -12,8 +12,7 @@ namespace opaline {
 struct LitAnew {
   Image image;
   /// True if all channels have one factor: within 1e-4 of a new render. Otherwise 99 % of the values are
-  /// within settings.tolerance, and the
-  /// error layer, an estimate, within a tenth.
+  /// within settings.tolerance, and the error layer, an estimate, within a tenth.
   bool has_one_factor = false;
 };
 
