@@ -195,7 +195,8 @@ configure() {
     rm -rf "$cache" "$folder/CMakeFiles"
   fi
   [[ -f $cache ]] || generator=(-G Ninja)
-  logged cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE "$@" ||
+  # Warnings are errors by both commands, whose compilers are Debian's; other flags would build everything twice.
+  logged cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE -DCMAKE_COMPILE_WARNING_AS_ERROR=ON "$@" ||
     fail 3 "cmake could not configure $folder"
 }
 
