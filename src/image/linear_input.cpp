@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <mutex>
 
@@ -17,6 +18,7 @@ namespace {
 struct Registered {
   std::shared_ptr<const PictureSource> source;
   TexelColors colors;
+  std::shared_ptr<ReadFailure> failure;
 };
 
 struct Registry {
@@ -44,9 +46,9 @@ bool all_within_range(const void* values, std::size_t count, OIIO::TypeDesc type
 }  // namespace
 
 void LinearInput::register_source(const std::string& name, std::shared_ptr<const PictureSource> source,
-                                  const TexelColors& colors) {
+                                  const TexelColors& colors, std::shared_ptr<ReadFailure> failure) {
   const std::lock_guard lock(registry().mutex);
-  registry().sources[name] = {std::move(source), colors};
+  registry().sources[name] = {std::move(source), colors, std::move(failure)};
 }
 
 void LinearInput::forget_source(const std::string& name) {
@@ -65,6 +67,7 @@ bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {
     if (found == registry().sources.end()) return false;
     source_ = found->second.source;
     colors_ = found->second.colors;
+    failure_ = found->second.failure;
   }
   if (!reopen()) return false;
   is_held_ = is_held(opened_, *layout_);
@@ -188,9 +191,26 @@ bool LinearInput::read_native_scanline(int subimage, int miplevel, int y, int z,
   return read_native_scanlines(subimage, miplevel, y, y + 1, z, data);
 }
 
+bool LinearInput::deliver(bool is_good, std::size_t bytes, void* data) {
+  if (is_good) return true;
+  failure_->set(geterror());
+  std::memset(data, 0, bytes);
+  return true;
+}
+
 bool LinearInput::read_native_scanlines(int subimage, int miplevel, int y_begin, int y_end, int z,
                                         void* data) {
   const std::lock_guard lock(mutex_);
+  return deliver(read_rows(subimage, miplevel, y_begin, y_end, z, data),
+                 std::size_t(m_spec.scanline_bytes()) * std::size_t(y_end - y_begin), data);
+}
+
+bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
+  const std::lock_guard lock(mutex_);
+  return deliver(read_tile(subimage, miplevel, x, y, z, data), std::size_t(m_spec.tile_bytes()), data);
+}
+
+bool LinearInput::read_rows(int subimage, int miplevel, int y_begin, int y_end, int z, void* data) {
   const bool is_changed = !colors_.are_plain();
   const std::size_t row = std::size_t(m_spec.width) * std::size_t(m_spec.nchannels);
   const std::size_t pixels = std::size_t(m_spec.width) * std::size_t(y_end - y_begin);
@@ -214,8 +234,7 @@ bool LinearInput::read_native_scanlines(int subimage, int miplevel, int y_begin,
   return !is_changed || change_colors(pixels, data);
 }
 
-bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
-  const std::lock_guard lock(mutex_);
+bool LinearInput::read_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
   const bool is_changed = !colors_.are_plain();
   const auto pixels = std::size_t(m_spec.tile_pixels());
   if (is_changed) values_.resize(pixels * std::size_t(m_spec.nchannels));

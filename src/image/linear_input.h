@@ -5,6 +5,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -22,6 +23,28 @@ namespace opaline {
 /// The formats of textures.
 inline constexpr std::string_view kTextureFormats[] = {"exr", "hdr", "png", "jpeg", "tiff"};
 
+/// The first failure of a source's inputs. OpenImageIO 2.5 aborts if an image fails under more than one reader of its cache, so
+/// inputs deliver zeros instead, and the texture reports the failure.
+class ReadFailure {
+ public:
+  void set(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (!is_set_) text_ = text;
+    is_set_ = true;
+  }
+  bool is_set() const { return is_set_; }
+  /// After is_set.
+  std::string text() const {
+    const std::lock_guard lock(mutex_);
+    return text_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string text_;
+  std::atomic<bool> is_set_ = false;
+};
+
 /// Decodes the first part of another input. Texels become linear colours, see TexelColors; those of sRGB are
 /// halves, with rounding below that of 8 bits. Formats without random access are decoded as a whole and
 /// cached until each row was read: the cache reads rows in any order, and OpenImageIO 2.4 rewinds by
@@ -31,7 +54,7 @@ class LinearInput : public OIIO::ImageInput {
  public:
   /// Registers the source of inputs with this name.
   static void register_source(const std::string& name, std::shared_ptr<const PictureSource> source,
-                              const TexelColors& colors);
+                              const TexelColors& colors, std::shared_ptr<ReadFailure> failure);
   static void forget_source(const std::string& name);
   static OIIO::ImageInput* create() { return new LinearInput; }
 
@@ -52,6 +75,10 @@ class LinearInput : public OIIO::ImageInput {
   bool read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) override;
 
  private:
+  bool read_rows(int subimage, int miplevel, int y_begin, int y_end, int z, void* data);
+  bool read_tile(int subimage, int miplevel, int x, int y, int z, void* data);
+  /// Returns true; after a failure, with zeros in place of the texels.
+  bool deliver(bool is_good, std::size_t bytes, void* data);
   void take_spec();
   bool reopen();
   bool decode();
@@ -69,6 +96,7 @@ class LinearInput : public OIIO::ImageInput {
 
   std::shared_ptr<const PictureSource> source_;
   TexelColors colors_;
+  std::shared_ptr<ReadFailure> failure_;
   bool is_held_ = false;
   OpenPicture opened_;
   std::optional<TexelLayout> layout_;

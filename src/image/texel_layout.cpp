@@ -10,11 +10,6 @@
 namespace opaline {
 namespace {
 
-std::string window_text(int x, int y, int width, int height) {
-  return std::to_string(width) + " x " + std::to_string(height) + " at " + std::to_string(x) + "," +
-         std::to_string(y);
-}
-
 bool is_grey_tiff(const OIIO::ImageSpec& file) {
   constexpr int kWhiteIsZero = 0, kBlackIsZero = 1, kNone = -1;
   const int photometric = file.get_int_attribute("tiff:PhotometricInterpretation", kNone);
@@ -47,14 +42,11 @@ TexelLayout::TexelLayout(const OIIO::ImageSpec& file, const std::string& path)
     begin = std::min(begin, sources[std::size_t(c)]);
     end = std::max(end, sources[std::size_t(c)] + 1);
   }
-  is_windowed = file.x != file.full_x || file.y != file.full_y || file.width != file.full_width ||
-                file.height != file.full_height;
-  if (file.x >= file.full_x + file.full_width || file.x + file.width <= file.full_x ||
-      file.y >= file.full_y + file.full_height || file.y + file.height <= file.full_y)
-    throw bad_file(path, "its data window lies outside of its display window",
-                   "within " + window_text(file.full_x, file.full_y, file.full_width, file.full_height),
-                   window_text(file.x, file.y, file.width, file.height));
-  check_display_window(path, double(file.width) * file.height, double(file.full_width) * file.full_height);
+  const PixelWindow data{file.x, file.y, file.width, file.height},
+      display{file.full_x, file.full_y, file.full_width, file.full_height};
+  // OpenImageIO computes smaller sizes of a window away from the origin wrongly.
+  is_windowed = data != display || file.x != 0 || file.y != 0;
+  check_windows(path, data, display);
 }
 
 bool TexelLayout::is_plain() const {

@@ -132,7 +132,7 @@ class OiioPicture : public CachedPicture {
     const auto values = std::size_t(spec.image_pixels()) * std::size_t(spec.nchannels);
     memory_ = {values * spec.format.size(), values * colors_.type_for(spec.format).size() * 4 / 3};
     name_ = "opaline " + std::to_string(count++) + ": " + source_->path;
-    LinearInput::register_source(name_, source_, colors_);
+    LinearInput::register_source(name_, source_, colors_, failure_);
     const OIIO::ustring name(name_);
     texture_system().imagecache()->add_file(name, LinearInput::create);
     handle_ = texture_system().get_texture_handle(name);
@@ -151,7 +151,8 @@ class OiioPicture : public CachedPicture {
     std::array<float, 4> texel{};
     if (!texture_system().texture(handle_, texture_system().get_perthread_info(), options, place.u, place.v,
                                   place.side_x[0], place.side_x[1], place.side_y[0], place.side_y[1],
-                                  channels_, texel.data()))
+                                  channels_, texel.data()) ||
+        failure_->is_set())
       fail();
     if (channels_ < 3) return {texel[0], texel[0], texel[0], channels_ == 2 ? texel[1] : 1};
     return {texel[0], texel[1], texel[2], channels_ == 4 ? texel[3] : 1};
@@ -164,7 +165,8 @@ class OiioPicture : public CachedPicture {
     std::array<float, 4> texel{}, along_u{}, along_v{};
     if (!texture_system().texture(handle_, texture_system().get_perthread_info(), options, place.u, place.v,
                                   place.side_x[0], place.side_x[1], place.side_y[0], place.side_y[1],
-                                  channels_, texel.data(), along_u.data(), along_v.data()))
+                                  channels_, texel.data(), along_u.data(), along_v.data()) ||
+        failure_->is_set())
       fail();
     const std::size_t at = channels_ > 2 ? channel : channel == 3 ? 1 : 0;
     return {along_u[at], along_v[at]};
@@ -206,12 +208,13 @@ class OiioPicture : public CachedPicture {
 
  private:
   [[noreturn]] void fail() const {
-    std::string complaint = texture_system().geterror();
+    std::string complaint = failure_->is_set() ? failure_->text() : texture_system().geterror();
     complaint = complaint.substr(0, complaint.find('\n'));
     throw bad_file(source_->path, "the image is damaged: " + complaint);
   }
 
   std::shared_ptr<const PictureSource> source_;
+  std::shared_ptr<ReadFailure> failure_ = std::make_shared<ReadFailure>();
   TexelColors colors_;
   int ignored_ = 0;   // channels of the file
   int channels_ = 0;  // channels of a texel

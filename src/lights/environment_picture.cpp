@@ -66,8 +66,8 @@ std::vector<RgbF> colours_of(const std::string& path, const Image& image, Negati
   if (std::min({places[0], places[1], places[2]}) < 0)
     throw bad_file(path, "has no colour channels for an environment map",
                    "the channels R, G and B, or Y, or one alone");
-  check_display_window(path, double(image.width) * image.height,
-                       double(image.full_width) * image.full_height);
+  check_windows(path, {image.crop_x, image.crop_y, image.width, image.height},
+                {0, 0, image.full_width, image.full_height});
   const auto width = std::size_t(image.full_width);
   std::vector<RgbF> pixels(width * std::size_t(image.full_height));
   for (std::size_t i = 0; i < pixels.size(); ++i) {

@@ -173,12 +173,15 @@ TEST(TextureFile, TakesChannelsByTheirNames) {
             std::string::npos);
   EXPECT_NE(refused({"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}).find("several colour layers"),
             std::string::npos);
+#if OIIO_VERSION < 20500  // later versions convert these channels to R, G and B
   EXPECT_NE(refused({"Y", "BY", "RY"}).find("luminance and chroma"), std::string::npos);
+#endif
 }
 
-// Claim: a picture is its display window: 0 beside the data window, without what lies over. Source: the OpenEXR manual. The
-// same picture, written as a whole, gives the same texels, by rows and by tiles. Tolerance: none. Fails if: texels are found by
-// their places in the data window, or the data window repeats.
+// Claim: an image is its display window, wherever that begins: 0 beside the data window, without the pixels outside. Source:
+// the OpenEXR manual. The same image, written as a whole, gives the same texels at every size, by rows and by tiles.
+// Tolerance: none. Fails if: texels are found by their places in the data window, the data window repeats, or smaller sizes
+// begin at the display window's origin.
 TEST(TextureFile, FillsTheDisplayWindow) {
   const ScratchFolder folder;
   const int size = 96;
@@ -186,45 +189,48 @@ TEST(TextureFile, FillsTheDisplayWindow) {
   struct Window {
     int x, y, width, height;
   };
-  const Window windows[] = {
-      {16, 16, 32, 32}, {0, 48, 96, 17}, {-8, 40, 60, 70}, {-5, -5, 120, 120}, {95, 95, 1, 1}};
-  for (const Window& window : windows)
-    for (const int tile : {0, 32})
-      for (const int channels : {1, 3, 4}) {
-        OIIO::ImageSpec spec(window.width, window.height, channels, OIIO::TypeFloat);
-        spec.x = window.x;
-        spec.y = window.y;
-        spec.full_width = spec.full_height = size;
-        spec.tile_width = spec.tile_height = tile;
-        OIIO::ImageSpec whole_spec(size, size, channels, OIIO::TypeFloat);
-        std::vector<float> part, whole(std::size_t(size * size * channels));
-        for (int y = window.y; y < window.y + window.height; ++y)
-          for (int x = window.x; x < window.x + window.width; ++x)
-            for (int c = 0; c < channels; ++c) {
-              part.push_back(value(x, y));
-              if (x >= 0 && x < size && y >= 0 && y < size)
-                whole[std::size_t((y * size + x) * channels + c)] = value(x, y);
-            }
-        const auto put = [&](const std::string& path, const OIIO::ImageSpec& as,
-                             const std::vector<float>& pixels) {
-          const auto output = OIIO::ImageOutput::create(path);
-          ASSERT_TRUE(output->open(path, as) && output->write_image(OIIO::TypeFloat, pixels.data()) &&
-                      output->close());
-        };
-        const std::string name =
-            std::to_string(&window - windows) + std::to_string(tile) + std::to_string(channels);
-        put(folder.file(name + "part.exr"), spec, part);
-        put(folder.file(name + "whole.exr"), whole_spec, whole);
-        const auto a = TextureFile::open(folder.file(name + "part.exr"), ColorSpace::linear),
-                   b = TextureFile::open(folder.file(name + "whole.exr"), ColorSpace::linear);
-        for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(a->mean()[c], b->mean()[c], 1e-12) << name;
-        EXPECT_FALSE(a->constant());
-        for (int i = 0; i < 400; ++i) {
-          const float side = i % 3 == 0 ? .03f : 0;
-          const TexturePlace place{float(i) * .0371f, float(i) * .0597f, {side, 0}, {0, side}};
-          EXPECT_EQ(a->at(place), b->at(place)) << name << ' ' << i;
+  const Window windows[] = {{16, 16, 32, 32},   {0, 48, 96, 17}, {-8, 40, 60, 70},
+                            {-5, -5, 120, 120}, {95, 95, 1, 1},  {0, 0, 96, 96}};
+  for (std::size_t w = 0; w < std::size(windows); ++w)
+    for (const int origin : {0, 70, -9})
+      for (const int tile : {0, 32})
+        for (const int channels : {1, 3, 4}) {
+          const Window& window = windows[w];
+          OIIO::ImageSpec spec(window.width, window.height, channels, OIIO::TypeFloat);
+          spec.x = origin + window.x;
+          spec.y = origin + window.y;
+          spec.full_x = spec.full_y = origin;
+          spec.full_width = spec.full_height = size;
+          spec.tile_width = spec.tile_height = tile;
+          OIIO::ImageSpec whole_spec(size, size, channels, OIIO::TypeFloat);
+          std::vector<float> part, whole(std::size_t(size * size * channels));
+          for (int y = window.y; y < window.y + window.height; ++y)
+            for (int x = window.x; x < window.x + window.width; ++x)
+              for (int c = 0; c < channels; ++c) {
+                part.push_back(value(x, y));
+                if (x >= 0 && x < size && y >= 0 && y < size)
+                  whole[std::size_t((y * size + x) * channels + c)] = value(x, y);
+              }
+          const auto put = [&](const std::string& path, const OIIO::ImageSpec& as,
+                               const std::vector<float>& pixels) {
+            const auto output = OIIO::ImageOutput::create(path);
+            ASSERT_TRUE(output->open(path, as) && output->write_image(OIIO::TypeFloat, pixels.data()) &&
+                        output->close());
+          };
+          const std::string name = std::to_string(w) + '_' + std::to_string(origin) + '_' +
+                                   std::to_string(tile) + std::to_string(channels);
+          put(folder.file(name + "part.exr"), spec, part);
+          put(folder.file(name + "whole.exr"), whole_spec, whole);
+          const auto a = TextureFile::open(folder.file(name + "part.exr"), ColorSpace::linear),
+                     b = TextureFile::open(folder.file(name + "whole.exr"), ColorSpace::linear);
+          for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(a->mean()[c], b->mean()[c], 1e-12) << name;
+          EXPECT_FALSE(a->constant());
+          for (int i = 0; i < 400; ++i) {
+            const float side = i % 3 == 0 ? .03f : 0;
+            const TexturePlace place{float(i) * .0371f, float(i) * .0597f, {side, 0}, {0, side}};
+            EXPECT_EQ(a->at(place), b->at(place)) << name << ' ' << i;
+          }
         }
-      }
   OIIO::ImageSpec beside(8, 8, 1, OIIO::TypeFloat);
   beside.x = 100;
   beside.full_width = beside.full_height = 64;

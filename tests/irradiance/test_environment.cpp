@@ -242,6 +242,8 @@ class EnvironmentFile : public testing::Test {
     const auto output = OIIO::ImageOutput::create("exr");
     OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()), OIIO::TypeFloat);
     spec.channelnames = image.channels;
+    spec.x = image.crop_x;
+    spec.y = image.crop_y;
     spec.full_width = image.full_width;
     spec.full_height = image.full_height;
     ASSERT_TRUE(output->open((folder_ / "room.exr").string(), spec) &&
@@ -347,6 +349,11 @@ TEST_F(EnvironmentFile, FillsTheDisplayWindow) {
   small.full_width = 8192;  // 2^25 pixels for 512
   small.full_height = 4096;
   write_raw(small);
+  EXPECT_THROW(scene(), Error);
+  Image beside = read_image(write(32, 16, 2, {"Y"}));
+  beside.crop_x = beside.full_width = 64;
+  beside.full_height = 32;
+  write_raw(beside);
   EXPECT_THROW(scene(), Error);
 }
 

@@ -172,7 +172,7 @@ std::vector<Transform> blended_joints(const GltfModel& gltf, std::size_t node, c
   std::vector<Transform> blended = blend.run(uneven);
   if (uneven > 0)
     part.warnings.push_back(gltf.path + ": " + place + ": the joints' weights of " + std::to_string(uneven) +
-                            " vertices do not sum to 1: they are scaled to");
+                            " vertices do not sum to 1 and are normalized");
   return blended;
 }
 
