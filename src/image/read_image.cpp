@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <dlfcn.h>
 
+#include <new>
+#include <string>
+
 #include "image/picture_module.h"
 #include "image/picture_reader.h"
 #include "opaline/error.h"
@@ -17,9 +20,11 @@ constexpr const char* kModule = "opaline_picture_reader.so";
 void* picture_module_function(const char* name) {
   void* const module = ::dlopen(kModule, RTLD_NOW | RTLD_LOCAL);
   void* const function = module != nullptr ? ::dlsym(module, name) : nullptr;
-  if (function == nullptr)
-    throw run_failed(kModule, std::string("cannot load the image-reader plugin: ") + ::dlerror());
-  return function;
+  if (function != nullptr) return function;
+  const std::string reason = ::dlerror();
+  for (const char* of_memory : {"failed to map segment", "annot allocate memory"})  // the loader's own texts
+    if (reason.find(of_memory) != std::string::npos) throw std::bad_alloc();
+  throw run_failed(kModule, "cannot load the image-reader plugin: " + reason);
 }
 
 bool picture_module_is_loaded() {

@@ -120,6 +120,19 @@ TEST(CliFailures, NoMemoryAbortsNothing) {
   }
 }
 
+// Claim: without memory for the libraries that read textures the program is out of memory, too. Source: main.cpp. Fails if: the
+// loader's words are printed.
+TEST(CliFailures, NoMemoryForTheTextureReader) {
+  const SceneFolder folder;
+  for (const rlim_t megabytes : {200, 250}) {
+    const Outcome outcome = run_program({"render", std::string(OPALINE_TEST_INPUTS) + "/grey_alpha.json",
+                                         "-o", folder.file("a.exr"), "--quiet"},
+                                        ".", {.file_size = {}, .address_space = megabytes << 20});
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+    EXPECT_EQ(outcome.err, "opaline: error: out of memory\n");
+  }
+}
+
 // Claim: a picture beyond the memory there is is refused before it is begun, with what would make it fit; a
 // crop of as large a one takes as much as the crop, and is made. By hand: 16384 x 16384 pixels of 26 floats
 // are 28 GB, above the 4 GB that the child may have. Fails if: the plan counts the pixels outside of the
