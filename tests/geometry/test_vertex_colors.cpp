@@ -41,6 +41,7 @@ TEST(VertexColors, OfAllFormats) {
   } cases[] = {
       {"srgb.obj", "v 0 0 0 1 1 1\nv 1 0 0 .5 .25 1\nv 0 1 0 0 0 0\n" + face, decoded(.5, .25, 1)},
       {"alpha.obj", "v 0 0 0 1 1 1 1\nv 1 0 0 .5 .25 1 .3\nv 0 1 0 0 0 0 1\n" + face, decoded(.5, .25, 1)},
+      {"weight.obj", "v 0 0 0 1 1 0 0\nv 1 0 0 1 .5 .25 1\nv 0 1 0 1 0 0 0\n" + face, decoded(.5, .25, 1)},
       {"some.obj", "v 0 0 0\nv 1 0 0 .5 .25 1\nv 0 1 0 1.0\n" + face, decoded(.5, .25, 1)},
       {"bytes.obj", "v 0 0 0\nv 1 0 0 51 102 255\nv 0 1 0 0 0 0\n" + face, decoded(.2, .4, 1)},
       {"bytes.ply",

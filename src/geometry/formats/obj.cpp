@@ -139,12 +139,17 @@ class ObjReader {
     mesh_.positions.push_back(position);
   }
 
-  /// Three numbers after a position, or four with opacity last; fewer are a weight.
+  /// Three numbers after a position, or four with opacity last or a weight of 1 first; fewer are a weight.
   void color(TextCursor& at) {
-    Vec3d value;
-    for (std::size_t i = 0; i < 3; ++i)
-      if (!parse_number(at.word(), value[i])) return;
-    colors_.set(mesh_.positions.size(), RgbF(value));
+    std::array<double, 4> value{};
+    std::size_t count = 0;
+    while (count < 4 && parse_number(at.word(), value[count])) ++count;
+    if (count < 3) return;
+    const std::size_t vertex = mesh_.positions.size();
+    colors_.set(vertex, RgbF(Vec3d(value[0], value[1], value[2])));
+    if (count == 4) colors_after_weights_.set(vertex, RgbF(Vec3d(value[1], value[2], value[3])));
+    have_weights_ = have_weights_ && count == 4 && value[0] == 1;
+    have_opacity_1_ = have_opacity_1_ && (count < 4 || value[3] == 1);
   }
 
   void normal(TextCursor& at) { normals_.push_back(usable_normal(three_numbers(at, "normal"))); }
@@ -276,7 +281,8 @@ class ObjReader {
                                "defines the material of a shape");
     if (has_polypaint_)
       mesh_.warnings.push_back(path_ + ": polypaint (#MRGB) is ignored; export vertex colours instead");
-    if (!colors_.empty()) give_vertex_colors(mesh_, colors_.linear(mesh_.positions.size()));
+    const FileColors& colors = have_weights_ && !have_opacity_1_ ? colors_after_weights_ : colors_;
+    if (!colors.empty()) give_vertex_colors(mesh_, colors.linear(mesh_.positions.size()));
     if (has_groups_) give_smoothing();
     if (!corner_normals_.empty()) give_normals();
     if (!uvs_.empty()) give_uvs();
@@ -340,8 +346,9 @@ class ObjReader {
   std::vector<Corner> corners_, kept_;                   // corners of the current face
   std::vector<Fan> fans_;                                // fans of faces with more than three corners
   std::unordered_set<std::int64_t> seen_;
-  FileColors colors_{ColorCoding::srgb};
-  std::uint32_t group_ = 0;  // smoothing group of the following faces
+  FileColors colors_{ColorCoding::srgb}, colors_after_weights_{ColorCoding::srgb};
+  bool have_weights_ = true, have_opacity_1_ = true;  // of all vertices with four numbers after the position
+  std::uint32_t group_ = 0;                           // smoothing group of the following faces
   bool has_groups_ = false, has_polypaint_ = false;
   std::vector<std::uint32_t> groups_;  // smoothing groups of the triangles before the last s
   std::size_t unread_ = 0;
