@@ -71,7 +71,8 @@ missing_packages() {
 
 install_packages() {
   local missing changed
-  [[ -n $(type -P apt-get) ]] || fail 2 "this script sets up Debian 12 and 13; elsewhere install the libraries of $*, then use cmake"
+  [[ -n $(type -P apt-get) ]] ||
+    fail 2 "this script sets up Debian 12 and 13; elsewhere install the libraries of $*, then use cmake"
   readarray -t missing < <(missing_packages "$@")
   ((${#missing[@]} > 0)) || return 0
 
@@ -195,7 +196,7 @@ configure() {
     rm -rf "$cache" "$folder/CMakeFiles"
   fi
   [[ -f $cache ]] || generator=(-G Ninja)
-  # Warnings are errors by both commands, whose compilers are Debian's; other flags would build everything twice.
+  # Both commands treat warnings as errors, with the compilers of Debian; different flags would build everything twice.
   logged cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE -DCMAKE_COMPILE_WARNING_AS_ERROR=ON "$@" ||
     fail 3 "cmake could not configure $folder"
 }

@@ -101,8 +101,8 @@ struct Medium {
   std::string name;
   std::variant<PhysicalMedium, ArtistMedium> coefficients;
   double eta = 1.3;
-  std::optional<ProfileKind> profile =
-      ProfileKind::dipole;  ///< none, as in a scene file: chosen for each body
+  /// None, as in a scene file without one: chosen for each body.
+  std::optional<ProfileKind> profile = ProfileKind::dipole;
   SourcePlace place{};
   /// Mean cosine g of the scattering angle, (-1, 1), with reduced coefficients. Used by random walks only;
   /// diffusion depends on (1 - g) sigma_s alone.

@@ -25,9 +25,8 @@ struct WalkStore;
 struct World;
 
 struct RenderResult {
-  Image
-      image;  ///< R G B A, diffuse, specular, albedo, N, P, Z, irradiance, error; linear Rec.709, radiance W/(mm^2
-              ///< sr)
+  /// R G B A, diffuse, specular, albedo, N, P, Z, irradiance, error; linear Rec.709, radiance W/(mm^2 sr).
+  Image image;
   std::vector<std::uint8_t> translucent;  ///< per pixel: 1 if most of its covered part is translucent
   std::size_t queries = 0;                ///< points with evaluated exitance
   std::size_t non_finite = 0;             ///< pixels of non-finite radiance; 0 unless something is broken

@@ -15,12 +15,6 @@ bool is_formula(std::string_view cell) {
   return error != std::errc{} || end != cell.data() + cell.size();
 }
 
-/// True if the cell needs a leading apostrophe: a formula, or a cell that already begins with apostrophes
-/// before one.
-bool needs_apostrophe(std::string_view cell) {
-  return is_formula(cell.substr(std::min(cell.find_first_not_of('\''), cell.size())));
-}
-
 std::string quoted(const std::string& text) {
   const std::string cell = needs_apostrophe(text) ? '\'' + text : text;
   if (cell.find_first_of(",\"\r\n#") == std::string::npos) return cell;
@@ -42,6 +36,10 @@ std::string line_of(const std::vector<std::string>& cells) {
 }
 
 }  // namespace
+
+bool needs_apostrophe(std::string_view cell) {
+  return is_formula(cell.substr(std::min(cell.find_first_not_of('\''), cell.size())));
+}
 
 std::string to_csv(const CsvTable& table) {
   std::string text;

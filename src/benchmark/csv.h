@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct CsvTable {
 };
 
 std::string to_csv(const CsvTable& table);
+/// True if a cell is written behind an apostrophe: a formula, or one that already begins with apostrophes before a formula.
+bool needs_apostrophe(std::string_view cell);
 
 /// Increases with each change of a column's name, unit or meaning, and with each removed column.
 inline constexpr int kBenchSchema = 2;

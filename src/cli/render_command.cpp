@@ -88,9 +88,9 @@ DirectResult shade_direct(const RenderArguments& arguments, const Session& sessi
                          budget_left(arguments), trial_writing(arguments, session.scene().film));
   ResumableState resumable(arguments, session.scene());
   try {
-    DirectResult result = render_direct({session.scene(), session.world(), session.rays(), session.plan(),
-                                         &monitor, [&](const DirectState&) { resumable.keep_each_minute(); }},
-                                        resumable.state);
+    DirectResult result =
+        render_direct({session.scene(), session.world(), session.rays(), session.plan(), &monitor},
+                      resumable.state, [&](const DirectState&) { resumable.keep_each_minute(); });
     resumable.keep();
     return result;
   } catch (const Error& stopped) {

@@ -201,16 +201,16 @@ bool LinearInput::deliver(bool is_good, std::size_t bytes, void* data) {
 bool LinearInput::read_native_scanlines(int subimage, int miplevel, int y_begin, int y_end, int z,
                                         void* data) {
   const std::lock_guard lock(mutex_);
-  return deliver(read_rows(subimage, miplevel, y_begin, y_end, z, data),
+  return deliver(read_texel_rows(subimage, miplevel, y_begin, y_end, z, data),
                  std::size_t(m_spec.scanline_bytes()) * std::size_t(y_end - y_begin), data);
 }
 
 bool LinearInput::read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
   const std::lock_guard lock(mutex_);
-  return deliver(read_tile(subimage, miplevel, x, y, z, data), std::size_t(m_spec.tile_bytes()), data);
+  return deliver(read_texel_tile(subimage, miplevel, x, y, z, data), std::size_t(m_spec.tile_bytes()), data);
 }
 
-bool LinearInput::read_rows(int subimage, int miplevel, int y_begin, int y_end, int z, void* data) {
+bool LinearInput::read_texel_rows(int subimage, int miplevel, int y_begin, int y_end, int z, void* data) {
   const bool is_changed = !colors_.are_plain();
   const std::size_t row = std::size_t(m_spec.width) * std::size_t(m_spec.nchannels);
   const std::size_t pixels = std::size_t(m_spec.width) * std::size_t(y_end - y_begin);
@@ -234,7 +234,7 @@ bool LinearInput::read_rows(int subimage, int miplevel, int y_begin, int y_end, 
   return !is_changed || change_colors(pixels, data);
 }
 
-bool LinearInput::read_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
+bool LinearInput::read_texel_tile(int subimage, int miplevel, int x, int y, int z, void* data) {
   const bool is_changed = !colors_.are_plain();
   const auto pixels = std::size_t(m_spec.tile_pixels());
   if (is_changed) values_.resize(pixels * std::size_t(m_spec.nchannels));

@@ -23,8 +23,8 @@ namespace opaline {
 /// The formats of textures.
 inline constexpr std::string_view kTextureFormats[] = {"exr", "hdr", "png", "jpeg", "tiff"};
 
-/// The first failure of a source's inputs. OpenImageIO 2.5 aborts if an image fails under more than one reader of its cache, so
-/// inputs deliver zeros instead, and the texture reports the failure.
+/// First failure to read a source. OpenImageIO 2.5 aborts if a thread looks up an image after reading it has failed, so inputs
+/// return zeros, and the texture reports the failure.
 class ReadFailure {
  public:
   void set(const std::string& text) {
@@ -75,8 +75,8 @@ class LinearInput : public OIIO::ImageInput {
   bool read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) override;
 
  private:
-  bool read_rows(int subimage, int miplevel, int y_begin, int y_end, int z, void* data);
-  bool read_tile(int subimage, int miplevel, int x, int y, int z, void* data);
+  bool read_texel_rows(int subimage, int miplevel, int y_begin, int y_end, int z, void* data);
+  bool read_texel_tile(int subimage, int miplevel, int x, int y, int z, void* data);
   /// Returns true; after a failure, with zeros in place of the texels.
   bool deliver(bool is_good, std::size_t bytes, void* data);
   void take_spec();

@@ -22,8 +22,9 @@ void* picture_module_function(const char* name) {
   void* const function = module != nullptr ? ::dlsym(module, name) : nullptr;
   if (function != nullptr) return function;
   const std::string reason = ::dlerror();
-  for (const char* of_memory : {"failed to map segment", "annot allocate memory"})  // the loader's own texts
-    if (reason.find(of_memory) != std::string::npos) throw std::bad_alloc();
+  // Messages of the dynamic loader.
+  for (const char* no_memory : {"failed to map segment", "annot allocate memory"})
+    if (reason.find(no_memory) != std::string::npos) throw std::bad_alloc();
   throw run_failed(kModule, "cannot load the image-reader plugin: " + reason);
 }
 

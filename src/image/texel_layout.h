@@ -21,7 +21,7 @@ struct TexelLayout {
   int channels = 0;          ///< channels of a texel
   ChannelPlaces sources{};   ///< sources of a texel's channels in the file
   int begin = 0, end = 0;    ///< range of the file's channels containing them all
-  bool is_windowed = false;  ///< the two windows differ
+  bool is_windowed = false;  ///< the windows differ, or begin away from (0, 0)
   int ignored = 0;           ///< TIFF channels beside grey without a declared meaning
 
   /// error Error{bad_input} naming the file: as channel_places; or disjoint windows

@@ -74,14 +74,13 @@ std::vector<KeyInfo> medium_rows() {
           "with the profile `\"auto\"`: thickness of flat bodies; otherwise that of the built-in plates, "
           "else infinite",
           "thickness of the shapes, for `\"multipole\"`; if set, this profile replaces `\"auto\"`; transmits "
-          "light "
-          "between the two sides"),
+          "light between the two sides"),
       row("medium", "profile", choice, "", kFiniteNumber, "`\"auto\"`", profile_meaning(), kProfileChoices),
       row("medium", "fit", choice, "", kFiniteNumber, "`\"refit\"`",
           "length scale of `\"normalized_diffusion\"`; if set, this profile replaces `\"auto\"`: "
-          "`\"refit\"`: fitted "
-          "to random walks with a boundary; without a boundary (Christensen & Burley 2015): "
-          "`\"diffuse_entry\"`, `\"searchlight\"` (a beam) and `\"dmfp\"` (from the diffuse mean free path)",
+          "`\"refit\"`: fitted to random walks with a boundary; without a boundary (Christensen & Burley "
+          "2015): `\"diffuse_entry\"`, `\"searchlight\"` (a beam) and `\"dmfp\"` (from the diffuse mean free "
+          "path)",
           kFitNames),
   };
 }

@@ -185,9 +185,9 @@ std::span<const Member<Settings>> settings_members() {
           "method", choice, "", kFiniteNumber, "",
           "`\"hierarchical\"`: BSSRDF with a radial profile, by hierarchical evaluation; `\"lambert\"`: "
           "diffuse reflection, usually fastest; `\"direct\"`: the same BSSRDF by unbiased Monte Carlo "
-          "sampling, slow "
-          "and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the reference; "
-          "`\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the reference"),
+          "sampling, slow and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the "
+          "reference; `\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the "
+          "reference"),
       member<&Settings::evaluator>(
           "evaluator", choice, "", kFiniteNumber, "",
           "hierarchical evaluation: `\"dual_tree\"`: clusters of shading points against octree nodes, to "
@@ -222,8 +222,7 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::cell_size>(
           "cell_size", number, "mean free paths", {.05, 100}, "",
           "`volume_diffusion`: size of the cells at the surface, in mean free paths or, if shorter, in units "
-          "of "
-          "0.45 diffuse mean free paths; smaller cells are slower and more accurate"),
+          "of 0.45 diffuse mean free paths; smaller cells are slower and more accurate"),
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "",
           "`volume`: re-entry of outgoing and reflected light into the same body, as in concavities; "

@@ -17,7 +17,7 @@ struct PassCost {
 
 }  // namespace
 
-DirectResult direct_within(const DirectInput& input, double seconds, const FinishPicture& finish) {
+DirectResult direct_within(const PrecomputeInput& input, double seconds, const FinishPicture& finish) {
   const Stopwatch watch;
   const auto spent = [&watch] { return watch.cost({}).cpu_seconds; };
   const std::size_t per_pass = entry_samples_per_pass(input.scene.film),
@@ -30,11 +30,8 @@ DirectResult direct_within(const DirectInput& input, double seconds, const Finis
     const std::size_t first = state.passes;
     const double start = spent();
     double end = start;
-    DirectInput part{scene, input.world, input.rays, input.plan, input.monitor, [&](const DirectState& now) {
-                       end = spent();
-                       if (input.after_pass) input.after_pass(now);
-                     }};
-    DirectResult result = render_direct(part, state);
+    DirectResult result = render_direct({scene, input.world, input.rays, input.plan, input.monitor}, state,
+                                        [&](const DirectState&) { end = spent(); });
     if (state.passes > first) cost = {(end - start) / double(state.passes - first), spent() - end};
     return result;
   };

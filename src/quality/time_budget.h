@@ -42,6 +42,6 @@ TimeBudget fit_budget(Session& session, Scene scene, double seconds, const Finis
 /// gives the same image, independent of the clock.
 /// in    seconds: CPU from this call to the end of finish, > 0
 /// error as render_direct, and finish's
-DirectResult direct_within(const DirectInput& input, double seconds, const FinishPicture& finish);
+DirectResult direct_within(const PrecomputeInput& input, double seconds, const FinishPicture& finish);
 
 }  // namespace opaline

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <utility>
 
 #include "core/cancel_check.h"
@@ -210,7 +209,8 @@ void Session::State::prepare(Monitor* monitor) {
     if (std::ranges::none_of(bodies, is_of)) continue;
     const SubsurfaceMethod& method = method_of(Method(m));
     in_stage(method.stage(), [&] {
-      for (BodyStages& stages : bodies | std::views::filter(is_of)) method.prepare(stages);
+      for (BodyStages& stages : bodies)
+        if (is_of(stages)) method.prepare(stages);
       return true;
     });
   }

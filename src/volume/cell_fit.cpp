@@ -18,7 +18,7 @@ constexpr float kFitRadius = 2.6f, kBlendRadius = 1.2f, kSurpriseRadius = 2.4f; 
 // rounding.
 constexpr float kTakenBeyond = .5f, kFarthestTaken = 1.5f, kRounding = 1e-3f;
 constexpr int kSurpriseRounds = 3;
-constexpr float kCube = 2.6f;  // spacings; tuned by bench_cell_fit
+constexpr float kCube = 2.6f;  // side of the search cubes, spacings
 constexpr double kShapePerSurprise = 1.4;
 constexpr float kBlendedNoise = .9f;  ///< noise of blended fits over that of one
 constexpr float kLeastCosine = .4f;   // least cosine between the normals of neighbours

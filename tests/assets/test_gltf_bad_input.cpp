@@ -62,8 +62,7 @@ TEST(GltfBadInput, IsNamed) {
        "test.gltf: meshes[0].primitives[0].attributes.POSITION refers to nothing"},
       {[](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 0; },
        "test.gltf: meshes[0].primitives[0].material refers to nothing (expected no index: the list is empty, "
-       "got "
-       "0)"},
+       "got 0)"},
       {[](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 1; }, "test.gltf: contains no visible mesh"},
       {[](Json& j) { j["nodes"][0]["mesh"] = 5; }, "test.gltf: nodes[0].mesh refers to nothing"},
       {[](Json& j) { j["nodes"][0]["children"] = {0}; },

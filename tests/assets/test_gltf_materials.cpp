@@ -174,7 +174,7 @@ TEST(GltfMaterials, ValuesOutOfRangeAreSaid) {
   EXPECT_EQ(scene_of(cube_of(material).glb(), "a.glb").media.at(0).eta, 1.5);
   volume.erase("attenuationDistance");
   EXPECT_TRUE(scene_of(cube_of(material).glb(), "a.glb").media.empty());
-  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "colour; treated as opaque"));
+  EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "a multiscatter colour; treated as opaque"));
 }
 
 // Claim: primitives of one mesh that share a medium are one body, those of another node another. Fails if light stops

@@ -225,8 +225,7 @@ TEST(MaterialX, MistakesAreNamed) {
             "a.mtlx: has no such surface (expected a file with an open_pbr_surface or standard_surface)");
   EXPECT_EQ(MaterialFolder(surface("<input name=\"subsurface_color\" value=\"1, x, 1\"/>")).error(),
             "a.mtlx: material 's': bad input 'subsurface_color' (expected one number, or three separated by "
-            "commas, "
-            "got '1, x, 1')");
+            "commas, got '1, x, 1')");
   EXPECT_EQ(MaterialFolder(surface("<input name=\"specular_ior\" value=\"99\"/>")).error(),
             "a.mtlx: material 's': bad input 'specular_ior' (expected a number from 0.1 to 10, got 99)");
 }

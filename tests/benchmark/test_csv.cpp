@@ -8,6 +8,7 @@
 
 #include "opaline/error.h"
 #include "support/read_csv.h"
+
 namespace opaline {
 namespace {
 
@@ -42,7 +43,7 @@ TEST(Csv, NamesAreNoFormulas) {
   EXPECT_EQ(parse_csv(text, "test.csv").rows, table.rows);
 }
 
-// Claim: a damaged file is refused, its line named. Source: csv.h. Fails if: short rows are filled up, or an
+// Claim: a damaged file is refused, its line named. Source: read_csv.h. Fails if: short rows are filled up, or an
 // open quote takes the rest of the file.
 TEST(Csv, DamagedIsRefused) {
   const std::map<std::string, int> cases{

@@ -120,8 +120,8 @@ TEST(CliFailures, NoMemoryAbortsNothing) {
   }
 }
 
-// Claim: without memory for the libraries that read textures the program is out of memory, too. Source: main.cpp. Fails if: the
-// loader's words are printed.
+// Claim: without memory for the libraries that read textures, the program reports "out of memory". Source: main.cpp. Fails
+// if: it prints the dynamic loader's message.
 TEST(CliFailures, NoMemoryForTheTextureReader) {
   const SceneFolder folder;
   for (const rlim_t megabytes : {200, 250}) {

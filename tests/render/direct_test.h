@@ -59,9 +59,9 @@ struct DirectScene {
 
   /// Goes on from `state` until there are `passes`.
   DirectResult run(DirectState& state, std::size_t passes, Monitor* monitor = nullptr,
-                   std::function<void(const DirectState&)> after_pass = {}) {
+                   const std::function<void(const DirectState&)>& after_pass = {}) {
     scene.settings.entry_samples = passes * entry_samples_per_pass(scene.film);
-    return render_direct({scene, world, rays, plan, monitor, std::move(after_pass)}, state);
+    return render_direct({scene, world, rays, plan, monitor}, state, after_pass);
   }
   Image picture(std::size_t passes) {
     DirectState state;

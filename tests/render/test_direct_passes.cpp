@@ -116,9 +116,8 @@ TEST(DirectPasses, UntilErrorStopsThere) {
     std::vector<double> errors;
     DirectState state;
     const DirectResult result =
-        render_direct({box.scene, box.world, box.rays, box.plan, nullptr,
-                       [&](const DirectState& s) { errors.push_back(relative_noise(s)); }},
-                      state);
+        render_direct({box.scene, box.world, box.rays, box.plan}, state,
+                      [&](const DirectState& s) { errors.push_back(relative_noise(s)); });
     EXPECT_EQ(errors.size(), state.passes);
     EXPECT_EQ(result.relative_error, errors.back());
     EXPECT_EQ(result.entry_samples, 16 * state.passes);
@@ -247,14 +246,11 @@ TEST(DirectPasses, ForeseesHowManyAnErrorTakes) {
   DirectState state;
   std::vector<double> foreseen;
   bool is_early = false;
-  render_direct(
-      {box.scene, box.world, box.rays, box.plan, &monitor,
-       [&](const DirectState&) {
-         const double pass = double(monitor.done) / double(foreseen.size() + 1);
-         foreseen.push_back(double(monitor.total) / pass - 1);  // the last pass is the other layers'
-         is_early |= monitor.total > 0 && monitor.done >= monitor.total;
-       }},
-      state);
+  render_direct({box.scene, box.world, box.rays, box.plan, &monitor}, state, [&](const DirectState&) {
+    const double pass = double(monitor.done) / double(foreseen.size() + 1);
+    foreseen.push_back(double(monitor.total) / pass - 1);  // the last pass is the other layers'
+    is_early |= monitor.total > 0 && monitor.done >= monitor.total;
+  });
   ASSERT_GT(state.passes, 50u);
   EXPECT_FALSE(is_early);
   for (std::size_t pass = 1; pass <= foreseen.size(); ++pass) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,20 +12,6 @@
 #include "opaline/error.h"
 
 namespace opaline {
-
-/// True if a spreadsheet would read the cell as a formula. Signed numbers are not formulas.
-inline bool is_formula(std::string_view cell) {
-  if (cell.empty() || std::string_view("=+-@\t\r").find(cell[0]) == std::string_view::npos) return false;
-  double number = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
-  return error != std::errc{} || end != cell.data() + cell.size();
-}
-
-/// True if the cell needs a leading apostrophe: a formula, or a cell that already begins with apostrophes
-/// before one.
-inline bool needs_apostrophe(std::string_view cell) {
-  return is_formula(cell.substr(std::min(cell.find_first_not_of('\''), cell.size())));
-}
 
 /// Reads the text and counts its lines for messages.
 class CsvReader {

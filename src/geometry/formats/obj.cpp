@@ -347,8 +347,9 @@ class ObjReader {
   std::vector<Fan> fans_;                                // fans of faces with more than three corners
   std::unordered_set<std::int64_t> seen_;
   FileColors colors_{ColorCoding::srgb}, colors_after_weights_{ColorCoding::srgb};
-  bool have_weights_ = true, have_opacity_1_ = true;  // true while every colour read fits
-  std::uint32_t group_ = 0;                           // smoothing group of the following faces
+  // True while every colour has four numbers and the first is 1; true while no fourth number differs from 1.
+  bool have_weights_ = true, have_opacity_1_ = true;
+  std::uint32_t group_ = 0;  // smoothing group of the following faces
   bool has_groups_ = false, has_polypaint_ = false;
   std::vector<std::uint32_t> groups_;  // smoothing groups of the triangles before the last s
   std::size_t unread_ = 0;

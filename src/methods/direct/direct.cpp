@@ -33,7 +33,7 @@ std::size_t most_passes(const Settings& settings, const Film& film) {
 
 class DirectRenderer {
  public:
-  explicit DirectRenderer(const DirectInput& input)
+  explicit DirectRenderer(const PrecomputeInput& input)
       : scene_(input.scene),
         render_input_{input.scene, input.world, input.rays, {}, input.monitor},
         samplers_(make_samplers(input)),
@@ -91,7 +91,7 @@ class DirectRenderer {
   }
 
  private:
-  static std::vector<EntrySampler> make_samplers(const DirectInput& input) {
+  static std::vector<EntrySampler> make_samplers(const PrecomputeInput& input) {
     std::vector<EntrySampler> samplers;
     for (const BodyPlan& group : input.plan.groups)
       samplers.emplace_back(group, make_diffuse_profile(input.scene.media[group.medium], input.world.unit),
@@ -175,7 +175,8 @@ double relative_noise(const DirectState& state) {
   return lit == 0 ? 0 : std::sqrt(*std::ranges::max_element(squares) / double(lit));
 }
 
-DirectResult render_direct(const DirectInput& input, DirectState& state) {
+DirectResult render_direct(const PrecomputeInput& input, DirectState& state,
+                           const std::function<void(const DirectState&)>& after_pass) {
   const DirectRenderer renderer(input);
   const Settings& settings = input.scene.settings;
   state.sums.resize(renderer.pixels() * DirectState::kSums);
@@ -201,7 +202,7 @@ DirectResult render_direct(const DirectInput& input, DirectState& state) {
   while (state.passes < passes && !good_enough) {
     renderer.add_pass(state);
     look();
-    if (input.after_pass) input.after_pass(state);
+    if (after_pass) after_pass(state);
   }
   DirectResult result;
   result.picture = renderer.picture(state);

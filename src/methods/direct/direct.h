@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "bodies/plan.h"
+#include "bodies/body.h"
 #include "render/render.h"
 
 namespace opaline {
@@ -18,15 +18,6 @@ struct DirectState {
   /// squares.
   std::vector<float> sums;
   static constexpr std::size_t kSums = 6;
-};
-
-struct DirectInput {
-  const Scene& scene;
-  const World& world;
-  const RayScene& rays;
-  const Plan& plan;
-  Monitor* monitor = nullptr;
-  std::function<void(const DirectState&)> after_pass = {};  ///< called between passes
 };
 
 struct DirectResult {
@@ -44,7 +35,9 @@ std::size_t entry_samples_per_pass(const Film& film);
 /// of the last whole pass, also if the monitor interrupts. The image depends on the scene and the number of
 /// passes alone, not on interruptions or threads. Unbiased: Russian roulette replaces weights of entries
 /// under 5 % of a typical one. Light paths and boundary as in `render`.
-DirectResult render_direct(const DirectInput& input, DirectState& state);
+/// in    after_pass: called between passes
+DirectResult render_direct(const PrecomputeInput& input, DirectState& state,
+                           const std::function<void(const DirectState&)>& after_pass = {});
 
 /// Mean of a pixel's passes and its variance; pixel: index into DirectState::sums.
 struct DirectEstimate {

@@ -28,7 +28,7 @@ std::string DirectMethod::shading_stage(const Scene& scene) const {
 
 std::optional<RenderResult> DirectMethod::render_image(const PrecomputeInput& input) const {
   DirectState state;
-  return render_direct({input.scene, input.world, input.rays, input.plan, input.monitor}, state).picture;
+  return render_direct(input, state).picture;
 }
 
 }  // namespace opaline
