@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cctype>
 
+#include "core/lower_case.h"
+
 namespace opaline {
 namespace {
 
@@ -22,9 +24,27 @@ bool has_drive(const std::string& name) {
   return name.size() > 1 && std::isalpha(static_cast<unsigned char>(name[0])) != 0 && name[1] == ':';
 }
 
-/// File of this name in a folder, ignoring folders of another machine in its path.
-fs::path beside(const std::string& name, const fs::path& folder) {
-  return folder / name.substr(name.find_last_of("/:") + 1);
+/// The entry of a folder whose name differs in case only, alphabetically the first; empty: none.
+std::string entry_in_any_case(const fs::path& folder, const std::string& name) {
+  std::string found;
+  std::error_code failure;
+  fs::directory_iterator entry(folder.empty() ? "." : folder, failure);
+  for (; !failure && entry != fs::directory_iterator(); entry.increment(failure)) {
+    const std::string other = entry->path().filename().string();
+    if (in_lower_case(other) == in_lower_case(name) && (found.empty() || other < found)) found = other;
+  }
+  return found;
+}
+
+/// File by a relative path, whose names may differ in case if no file has them exactly; empty: none.
+fs::path find_in_any_case(fs::path folder, const fs::path& relative) {
+  for (const fs::path& name : relative) {
+    const std::string entry =
+        is_there(folder / name) ? name.string() : entry_in_any_case(folder, name.string());
+    if (entry.empty() && !name.empty()) return {};
+    folder /= entry;
+  }
+  return folder;
 }
 
 fs::path folder_of(const std::string& file) {
@@ -68,12 +88,18 @@ NamedFile find_named_file(const std::string& name, const std::string& asset, con
     check_is_inside(name, asset, given);
     return {given, {}};
   }
-  for (const fs::path& other : {beside(slashes, folder), beside(slashes, folder_of(asset))})
-    if (is_there(other)) {
-      check_is_inside(name, asset, other);
-      return {other, in_quotes(name) + ": no such file; uses " + in_quotes(other.filename().string()) +
-                         " in the same folder"};
-    }
+  const std::string last =
+      slashes.substr(slashes.find_last_of("/:") + 1);  // without another machine's folders
+  const bool is_relative = !has_drive(slashes) && fs::path(slashes).is_relative();
+  const auto used = [&](const fs::path& other, const std::string& as) {
+    check_is_inside(name, asset, other);
+    return NamedFile{other, in_quotes(name) + ": no such file; uses " + as};
+  };
+  if (is_relative)
+    if (const fs::path other = find_in_any_case(folder, slashes); !other.empty())
+      return used(other, in_quotes(other.lexically_relative(folder).string()));
+  for (const fs::path& other : {find_in_any_case(folder, last), find_in_any_case(folder_of(asset), last)})
+    if (!other.empty()) return used(other, in_quotes(other.filename().string()) + " in the same folder");
   return {};
 }
 

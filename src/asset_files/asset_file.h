@@ -24,8 +24,9 @@ struct OutsideAsset : Error {
 void allow_files_outside_assets();
 bool are_files_outside_assets_allowed();
 
-/// Finds a file by the name in an asset: relative to `folder`, with slashes or backslashes. If missing, as
-/// with paths of another machine, finds the file of that name in the same folder.
+/// Finds a file by the name in an asset: relative to `folder`, with slashes or backslashes. If missing, finds
+/// the file whose path differs in case only, or, as with paths of another machine, the file of that name in the
+/// same folder.
 /// in    asset: its folder must contain the file; folder: of the referring file
 /// error OutsideAsset naming the asset and the file: it is outside, possibly through a link, and
 ///       allow_files_outside_assets was not called

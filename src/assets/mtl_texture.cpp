@@ -2,6 +2,7 @@
 #include "assets/mtl_texture.h"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 
 #include "assets/text_lines.h"
@@ -36,10 +37,12 @@ class StatementReader {
   explicit StatementReader(std::string_view text) : rest_(text) {}
 
   MtlTexture run() {
-    for (const Option* option = next_option(); option != nullptr; option = next_option()) {
-      next_word(rest_);
-      read(*option);
-    }
+    do {
+      for (const Option* option = next_option(); option != nullptr; option = next_option()) {
+        next_word(rest_);
+        read(*option);
+      }
+    } while (skip_unknown_option());
     rest_ = trimmed(rest_);
     if (rest_.size() > 1 && rest_.front() == '"' && rest_.back() == '"')
       rest_ = rest_.substr(1, rest_.size() - 2);
@@ -52,6 +55,26 @@ class StatementReader {
     std::string_view ahead = rest_;
     const auto found = std::ranges::find(kOptions, next_word(ahead), &Option::name);
     return found == kOptions.end() ? nullptr : &*found;
+  }
+
+  /// Skips an option before the file's name with its numbers and switches; false: none.
+  bool skip_unknown_option() {
+    std::string_view behind = rest_;
+    std::string text(next_word(behind));
+    const bool is_option =
+        text.size() > 1 && text[0] == '-' && std::isalpha(static_cast<unsigned char>(text[1]));
+    if (!is_option || trimmed(behind).empty()) return false;
+    while (true) {
+      std::string_view ahead = behind;
+      const std::string word(next_word(ahead));
+      const bool is_value = number_of(word) || word == "on" || word == "off";
+      if (!is_value || trimmed(ahead).empty()) break;
+      text += ' ' + word;
+      behind = ahead;
+    }
+    rest_ = behind;
+    texture_.not_carried.push_back(text);
+    return true;
   }
 
   /// Options may have fewer numbers, before the file's name.

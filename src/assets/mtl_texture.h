@@ -14,7 +14,7 @@ struct MtlTexture {
   std::array<double, 2> scale{1, 1};     ///< -s: of UVs, v upwards
   std::array<double, 2> offset{0, 0};    ///< -o: added after scaling
   double gain = 1, bump = 1;             ///< second number of -mm, and -bm
-  std::vector<std::string> not_carried;  ///< unsupported options that change the image
+  std::vector<std::string> not_carried;  ///< unknown options, and unsupported ones that change the image
 };
 
 /// in    text: after the keyword

@@ -148,6 +148,7 @@ FinishPicture trial_writing(const RenderArguments& arguments, const Film& film) 
 }
 
 KnownErrors choose_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
+  if (session.scene().lights.empty()) return {};  // a black image has no error
   const Settings& settings = session.scene().settings;
   if (arguments.time_budget &&
       (settings.method == Method::lambert || settings.method == Method::volume_diffusion))
@@ -186,7 +187,7 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
 std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArguments& arguments,
                                             const Session& session, const KnownErrors& errors,
                                             const RenderResult& picture) {
-  if (!arguments.verify) return {};
+  if (!arguments.verify || session.scene().lights.empty()) return {};
   if (session.bodies().empty()) {
     print_warning(arguments.log, "the scene has no translucent shape, so --verify measures nothing");
     return {};

@@ -75,6 +75,24 @@ ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, 
   return read_torus(source, mm_per_unit);
 }
 
+/// Fails with advice if a missing medium has the name of a preset, or a similar one.
+void fail_if_preset(const Value& value, const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const Preset& preset : presets()) names.push_back(preset.name);
+  const auto hint_at = [&](const std::string_view& preset) { return did_you_mean(name, {&preset, 1}); };
+  auto found = std::ranges::find(names, name);
+  const bool is_exact = found != names.end();
+  if (!is_exact)
+    found = std::ranges::find_if(names, [&](const auto& preset) { return !hint_at(preset).empty(); });
+  if (found == names.end()) return;
+  const std::string preset(*found),
+      text = "is not a medium of this scene" + (is_exact ? "" : hint_at(*found));
+  if (value.node().override_index >= 0)
+    value.fail(text + ": there is no '" + preset + "' yet; add --set media." + preset + ".preset=" + preset);
+  value.fail(text + ": '" + preset + "' is a preset: write \"media\": {\"" + preset + "\": {\"preset\": \"" +
+             preset + "\"}}");
+}
+
 std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
   const std::string name = value.string();
   std::vector<std::string_view> names;
@@ -82,14 +100,9 @@ std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
     if (media[i].name == name) return i;
     names.push_back(media[i].name);
   }
-  const bool is_preset = std::ranges::any_of(presets(), [&](const Preset& p) { return p.name == name; });
-  if (is_preset && value.node().override_index >= 0)
-    value.fail("is not a medium of this scene: there is no '" + name + "' yet; add --set media." + name +
-               ".preset=" + name);
-  if (is_preset)
-    value.fail("is not a medium of this scene: '" + name + "' is a preset: write \"media\": {\"" + name +
-               "\": {\"preset\": \"" + name + "\"}}");
-  value.fail("is not a medium of this scene" + did_you_mean(name, names),
+  const std::string hint = did_you_mean(name, names);
+  if (hint.empty()) fail_if_preset(value, name);
+  value.fail("is not a medium of this scene" + hint,
              names.empty() ? "a name from 'media', which is empty" : "one of " + printable(join(names)));
 }
 

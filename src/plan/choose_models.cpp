@@ -74,6 +74,13 @@ std::string two_digits(double value) {
   return value < 100 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
 }
 
+/// " = 12 mean free paths", or a bound on the number.
+std::string mean_free_paths_text(double count) {
+  if (count > 1e6) return ", more than a million mean free paths";
+  if (count < 1e-6) return ", less than a millionth of a mean free path";
+  return fmt::format(" = {} mean free paths", two_digits(count));
+}
+
 std::string percent_text(double error) {
   return fmt::format("{:.{}f} %", 100 * error, error < .0995 ? 1 : 0);
 }
@@ -105,8 +112,8 @@ BodyModel choose_model(const Medium& medium, const BodyShape& shape) {
   const double mean_free_paths = thickness / extremes.mean_free_path;
   model.expected_error = (is_flat ? kErrorOfPlates : kErrorOfBodies).at(mean_free_paths, extremes);
   model.expected_error_of_diffusion = kErrorOfDiffusion.at(mean_free_paths, extremes);
-  const std::string size = fmt::format("{} mm = {} mean free paths ({})", two_digits(thickness),
-                                       two_digits(mean_free_paths), extremes.channels);
+  const std::string size = fmt::format("{} mm{} ({})", two_digits(thickness),
+                                       mean_free_paths_text(mean_free_paths), extremes.channels);
   if (is_flat && thickness < kCrossed * extremes.diffuse_mean_free_path) {
     model.profile.kind = ProfileKind::multipole;
     model.profile.thickness = thickness;

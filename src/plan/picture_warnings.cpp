@@ -308,7 +308,10 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
     std::ranges::nth_element(values, at);
     return double(*at) * gain;
   };
-  const double brightest = quantile(.99), usual = quantile(.5);
+  const double usual = quantile(.5);
+  double brightest = quantile(.99);
+  if (brightest < double(kAlmostBlack))  // a small part may be bright
+    brightest = double(std::ranges::max(brightness(image, 1))) * gain;
   if (brightest < double(kAlmostBlack)) return {too_dark(scene, world, brightest)};
   if (brightest < double(kDark))
     return {fmt::format("the image is dark: 99 % of the visible surface is at most {:.2g} x white{}{}",

@@ -7,6 +7,7 @@
 namespace opaline {
 
 std::vector<std::string> chosen_overrides(const Session& session, std::size_t entry_samples) {
+  if (session.scene().lights.empty()) return {};  // nothing was chosen
   const Settings& settings = session.scene().settings;
   if (settings.method == Method::direct) return {fmt::format("settings.entry_samples={}", entry_samples)};
   if (settings.method == Method::volume_diffusion)

@@ -87,10 +87,11 @@ void choose_samples(const Scene& scene, double fewest, BodyPlan& group, std::vec
         fmt::format("{:.2f} mean free paths of {:.4g} mm", spacing / mean_free_path, mean_free_path);
   }
   if (count > double(settings.max_samples)) {
+    const std::string required = count > 1e12 ? "more than a trillion" : fmt::format("{:.3g}", count);
     warnings.push_back(
-        fmt::format("{}: requires {:.3g} samples ({}) but uses {} (settings.max_samples); check mm_per_unit: "
+        fmt::format("{}: requires {} samples ({}) but uses {} (settings.max_samples); check mm_per_unit: "
                     "the area is {:.4g} mm^2, the mean free path {:.4g} mm",
-                    group.name, count, group.reason, settings.max_samples, group.area, mean_free_path));
+                    group.name, required, group.reason, settings.max_samples, group.area, mean_free_path));
     count = double(settings.max_samples);
     group.reason = "settings.max_samples";
   }

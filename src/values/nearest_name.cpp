@@ -46,8 +46,16 @@ struct OtherWord {
   std::array<std::string_view, 7> own = {};
 };
 
-// Other programs' names of keys and choices.
+// Other programs' names of options, keys and choices.
 constexpr OtherWord kOtherWords[] = {
+    {"--cores", {"--threads"}},
+    {"--denoise", {"--target-error", "--until-error"}},
+    {"--error", {"--target-error", "--until-error"}},
+    {"--jobs", {"--threads"}},
+    {"--noise", {"--target-error", "--until-error"}},
+    {"--quality", {"--target-error", "--spp"}},
+    {"--verbose", {"--log"}},
+    {"--workers", {"--threads"}},
     {"absorption", {"sigma_a"}},
     {"albedo", {"subsurface_color", "base_color", "reflectance"}},
     {"area", {"quad"}},
@@ -84,7 +92,8 @@ constexpr OtherWord kOtherWords[] = {
     {"objects", {"shapes"}},
     {"origin", {"position"}},
     {"path", {"volume"}},
-    {"position", {"center"}},
+    {"pos", {"position", "center", "corner", "transform"}},
+    {"position", {"center", "corner", "transform"}},
     {"power", {"intensity", "radiance", "irradiance", "strength"}},
     {"radiance", {"intensity", "irradiance", "strength"}},
     {"random_walk", {"volume"}},
@@ -147,6 +156,25 @@ Names similar_names(std::string_view name, std::span<const std::string_view> can
   return {};
 }
 
+/// Keys with a word beginning with this name, `position` for `pos`, preferably their first word; none if there
+/// are many.
+Names abbreviated_keys(std::string_view name, std::span<const std::string_view> keys) {
+  constexpr std::size_t most = 3;
+  if (name.empty()) return {};
+  Names found;
+  for (const std::string_view key : keys)
+    if (key.starts_with(name)) found.emplace_back(key);
+  if (found.empty())
+    for (const std::string_view key : keys)
+      if (key.find('_' + std::string(name)) != key.npos) found.emplace_back(key);
+  return found.size() <= most ? found : Names{};
+}
+
+Names similar_keys(std::string_view name, std::span<const std::string_view> keys) {
+  const Names found = similar_names(name, keys);
+  return found.empty() ? abbreviated_keys(name, keys) : found;
+}
+
 /// Sections occurring once in a scene, so their keys have one path.
 constexpr std::array<std::string_view, 4> kSingleSections{"camera", "film", "settings",
                                                           "settings.laboratory"};
@@ -171,13 +199,24 @@ Names nearest_path(std::string_view key) {
   return {};
 }
 
+/// The path of a key beginning with this name, or none.
+Names abbreviated_path(std::string_view name) {
+  constexpr std::size_t fewest = 3;  // letters of an abbreviation across sections
+  if (name.size() < fewest) return {};
+  Names paths;
+  for (const std::string_view section : kSingleSections)
+    for (const std::string_view key : section_keys(section))
+      if (key.starts_with(name)) paths.push_back(std::string(section) + '.' + std::string(key));
+  return paths.size() == 1 ? paths : Names{};
+}
+
 /// Paths of keys of media and shapes matching a name at the top level.
 Names paths_in_lists(std::string_view key) {
   for (const auto& [section, list] :
        {std::pair("medium", "media.NAME."), std::pair("shape", "shapes.NAME.")}) {
     const std::span<const std::string_view> keys = section_keys(section);
     const bool is_there = std::ranges::find(keys, key) != keys.end();
-    Names found = is_there ? Names{std::string(key)} : similar_names(key, keys);
+    Names found = is_there ? Names{std::string(key)} : similar_keys(key, keys);
     for (std::string& name : found) name.insert(0, list);
     if (!found.empty()) return found;
   }
@@ -195,8 +234,9 @@ std::string did_you_mean_key(std::string_view name, std::string_view section) {
   // Keys of shapes, lights and media have similar names, but are not confused with others.
   const bool may_be_elsewhere =
       section == "scene" || std::ranges::find(kSingleSections, section) != kSingleSections.end();
-  if (!may_be_elsewhere) return did_you_mean(name, keys);
-  for (const Names& found : {paths_of(name), similar_names(name, keys), nearest_path(name)})
+  if (!may_be_elsewhere) return suggestion(similar_keys(name, keys));
+  for (const Names& found :
+       {paths_of(name), similar_keys(name, keys), nearest_path(name), abbreviated_path(name)})
     if (!found.empty()) return suggestion(found);
   return section == "scene" ? suggestion(paths_in_lists(name)) : "";
 }

@@ -13,8 +13,8 @@ namespace opaline {
 /// in edit distance, otherwise those ending with this word; or nothing.
 std::string did_you_mean(std::string_view name, std::span<const std::string_view> candidates);
 
-/// The same for an unknown key of a section: in the scene, camera, film and settings it also suggests paths
-/// of the other sections' keys.
+/// The same for an unknown key of a section, possibly abbreviated: in the scene, camera, film and settings it
+/// also suggests paths of the other sections' keys.
 std::string did_you_mean_key(std::string_view name, std::string_view section);
 
 /// Paths of the keys of camera, film and settings with this or a similar name: "settings.samples".

@@ -125,6 +125,28 @@ TEST(AssetFiles, OldMaterialXSaysSo) {
   }
 }
 
+// Claim: a path that differs from a file's in case only leads to it, in any folder of the path, with a warning that names both;
+// what lies outside stays refused. Fails if names are compared exactly, or the search leaves the folder.
+TEST(AssetFiles, AreFoundInAnyCase) {
+  const TwoFolders folder;
+  fs::copy(folder.path / "asset" / "own.png", folder.path / "asset" / "maps" / "skin.png");
+  for (const auto& [name, used] :
+       {std::pair("Own.PNG", "'own.png'"), std::pair("MAPS/Skin.png", "'maps/skin.png'"),
+        std::pair("C:\\x\\OWN.png", "'own.png' in the same folder")}) {
+    folder.put_obj("A.mtl", name);
+    const Scene scene = load_scene(folder.file("asset/a.obj"));
+    EXPECT_TRUE(scene.shapes.at(0).reflectance_texture) << name;
+    ASSERT_EQ(scene.warnings.size(), 2u) << name;
+    EXPECT_TRUE(scene.warnings[0].ends_with("a.obj:1: mtllib 'A.mtl': no such file; uses 'a.mtl'"))
+        << scene.warnings[0];
+    EXPECT_TRUE(scene.warnings[1].ends_with("a.mtl:2: map_Kd '" + std::string(name) +
+                                            "': no such file; uses " + used))
+        << scene.warnings[1];
+  }
+  folder.put_obj("a.mtl", "../Secret.PNG");
+  EXPECT_NE(folder.message("asset/a.obj").find(kOutside), std::string::npos);
+}
+
 // Claim: where a path leads nowhere, as one of another machine, the file of that name in the same folder, with a warning that
 // names both. Fails if the texture is missing, or nothing is said.
 TEST(AssetFiles, AreFoundBeside) {

@@ -86,6 +86,23 @@ TEST(MtlMaterials, UnknownStatementsAreReported) {
             "a.mtl:2: map_kd 'p.png' of material 'red': there is no such file\n");
 }
 
+// Claim: an unknown option before an image's name is reported by file and line, and the image is read. Source: by hand. Tolerance:
+// none. Fails if: the option becomes part of the name.
+TEST(MtlMaterials, UnknownTextureOptionsAreReported) {
+  for (const auto& [statement, option] : {std::pair("map_Kd -foo 1 p.png", "-foo 1"),
+                                          std::pair("map_Kd -s 1 1 1 -foo on 2 -mm 0 1 p.png", "-foo on 2"),
+                                          std::pair("map_Kd -foo p.png", "-foo")}) {
+    const MtlFolder folder(std::string("newmtl red\n") + statement + '\n');
+    test::put_png(folder.file("p.png"), 4, 4, [](int x, int) { return test::Bytes{40 * x, 100, 50}; });
+    const ImportedAsset import = folder.import();
+    ASSERT_EQ(import.warnings.size(), 1u);
+    EXPECT_EQ(import.warnings[0], folder.file("a.mtl") +
+                                      ":2: map_Kd 'p.png' of material 'red': the option '" + option +
+                                      "' is ignored");
+    EXPECT_TRUE(load_scene(folder.file("a.obj")).shapes.at(0).reflectance_texture) << statement;
+  }
+}
+
 // Claim: what a matte surface has no analogue for is reported once per material, in the order of the file; values without
 // effect are not. Source: the formats' defaults. Tolerance: none. Fails if: a statement is left out of the list.
 TEST(MtlMaterials, StatementsWithoutAnalogueAreReportedTogether) {

@@ -266,7 +266,7 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
   put_bytes(folder.file("bad.gltf"), "{}");
   put_bytes(folder.file("wax.txt"), "wax");
   put_bytes(folder.file("wax.glb"), "wax of bees, for candles");
-  for (const char* name : {"b.fbx", "b.USDZ", "ball.blend"})
+  for (const char* name : {"b.fbx", "b.USDZ", "b.x3d", "b.STEP", "ball.blend"})
     put_bytes(folder.file(name), "Kaydara FBX Binary");
   put_bytes(folder.file("ball.json"), R"({"shapes": [{"file": "ball.blend"}]})");
   put_bytes(folder.file("dusk.json"),
@@ -283,6 +283,8 @@ TEST(CliAssets, BrokenAssetsAreNamed) {
       {{"import", "gone.glb", "-o", "a.json"}, "gone.glb: no such file"},
       {{"render", "b.fbx", "-o", "a.png"}, "b.fbx: FBX is not supported; export GLB"},
       {{"import", "b.USDZ", "-o", "a.json"}, "b.USDZ: USD is not supported; export GLB"},
+      {{"render", "b.x3d", "-o", "a.png"}, "b.x3d: X3D is not supported; export GLB"},
+      {{"render", "b.STEP", "-o", "a.png"}, "b.STEP: STEP is not supported; export STL"},
       {{"info", "ball.json"}, "ball.blend: Blender's .blend is not supported; export GLB"},
       {{"import", "cubes.glb", "--material", "gone.mtlx", "-o", "a.json"}, "gone.mtlx: no such file"},
       {{"import", "wax.txt", "-o", "a.json"}, "wax.txt: is not a supported asset format"},

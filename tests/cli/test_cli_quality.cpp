@@ -223,6 +223,20 @@ TEST(CliQuality, DirectStopsInTime) {
   EXPECT_TRUE(contains(done["again_by"], entries)) << done["again_by"];
 }
 
+// Claim: without lights the image is black, so that no error remains to be reached or measured; render says so and succeeds.
+// Source: by hand. Fails if: the options complain of the method that replaces the body's, or settings are chosen.
+TEST(CliQuality, NoErrorWithoutLights) {
+  const QualityFolder folder;
+  const std::vector<std::vector<std::string>> choices = {
+      {"--target-error", "1%"}, {"--time-budget", "1s"}, {"--verify"}};
+  for (std::vector<std::string> options : choices) {
+    options.insert(options.end(), {"--set", "lights=[]"});
+    const Outcome outcome = folder.render(options);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "opaline: warning: the scene has no lights: the image is black\n");
+  }
+}
+
 // Claim: what makes no sense is exit 2 with what was expected, and nothing is written: values that are no
 // error, settings that are chosen beside it, frames, methods without samples, the classic evaluator. Fails
 // if: a check goes.

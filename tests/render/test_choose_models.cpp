@@ -57,6 +57,21 @@ TEST(ChooseModels, EachRowOfTheRule) {
   EXPECT_FALSE(open.expected_error || open.expected_error_of_diffusion);
 }
 
+// Claim: numbers of mean free paths beyond all use are bounded in words. Source: by hand. Fails if: they are printed to their
+// last digit.
+TEST(ChooseModels, BoundedNumbers) {
+  const auto reason_of = [](double radius) {
+    Medium medium = open_marble();
+    medium.coefficients = ArtistMedium{Rgb(.8), Rgb(radius)};
+    return model_of(SphereShape{{}, 10}, medium).reason;
+  };
+  EXPECT_NE(reason_of(1e-30).find("mm, more than a million mean free paths ("), std::string::npos)
+      << reason_of(1e-30);
+  EXPECT_NE(reason_of(1e30).find("mm, less than a millionth of a mean free path ("), std::string::npos)
+      << reason_of(1e30);
+  EXPECT_NE(reason_of(1).find(" mean free paths ("), std::string::npos) << reason_of(1);
+}
+
 // Claim: a profile that the scene names stays, with its thickness, and no error is foretold for it. Fails if: the rule
 // is asked all the same.
 TEST(ChooseModels, NamedProfilesStay) {

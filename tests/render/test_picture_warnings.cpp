@@ -173,6 +173,18 @@ TEST(PictureWarnings, TooDarkOrTooBrightForTheExposure) {
   EXPECT_EQ(sun[0].find("mm_per_unit"), std::string::npos) << sun[0];
 }
 
+// Claim: an image with a small bright part is neither black nor too dark. By hand: a cone of 2 degrees at 30 mm is a
+// spot of 2 mm, which is 1 of 1,024 pixels of 2.3 mm. Fails if: the spot is left out of the maximum.
+TEST(PictureWarnings, SmallBrightParts) {
+  Scene scene = lit_ball();
+  scene.shapes[0].source = QuadShape{{-50, -50, 0}, {100, 0, 0}, {0, 100, 0}};
+  scene.shapes[0].medium.reset();
+  scene.lights = {{"spot", SpotLight{{1, 1, 30}, {0, 0, -1}, Rgb(30000), 2}}};
+  EXPECT_TRUE(warnings_of(scene).empty());
+  scene.lights = {{"spot", SpotLight{{1, 1, 30}, {0, 0, -1}, Rgb(0.03), 2}}};
+  expect_warning(scene, {"the image is almost black", "--exposure "});
+}
+
 // Claim: an image that is black for its surfaces says which: a tint or reflectance of 0, or a metal with nothing to show. Source:
 // picture_warnings.h. Fails if: the lights are blamed.
 TEST(PictureWarnings, BlackSurfaces) {

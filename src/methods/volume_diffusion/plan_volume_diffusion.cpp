@@ -22,12 +22,16 @@ bool varies(const Scene& scene, const BodyPlan& body) {
 std::string reason_against_cells(const Scene& scene, const World& world, const BodyPlan& body) {
   if (!(body.smallest_mean_free_path > 0))
     return "the medium has no mean free path, so the body reflects diffusely";
-  const auto is_open = [&](std::uint32_t mesh) { return world.reports[mesh].open_edges > 0; };
-  if (std::ranges::any_of(body.meshes, is_open)) return "its open mesh encloses no volume";
+  std::size_t open_edges = 0;
+  for (const std::uint32_t mesh : body.meshes) open_edges += world.reports[mesh].open_edges;
+  if (open_edges > 0)
+    return fmt::format("its mesh is open ({} boundary edges) and encloses no volume", open_edges);
   if (!varies(scene, body) && is_too_large_for_cells(scene.settings, body))
     return fmt::format(
-        "it requires more than {:.2g} cells of {:.3g} mean free paths, and its surface is flat on that scale",
-        kMostCells, widest_cell(scene.settings));
+        "it requires more than {:.2g} million cells of {:.3g} mean free paths, and its surface is flat on "
+        "that "
+        "scale",
+        kMostCells / 1e6, widest_cell(scene.settings));
   return {};
 }
 
@@ -39,7 +43,7 @@ void warn_of_open_mesh(const Scene& scene, const BodyPlan& body, std::vector<std
     return file != nullptr && file->fill_holes;
   });
   warnings.push_back(body.name + ": " + body.reason_against_method +
-                     "; uses its radial profile instead of volume_diffusion; close " +
+                     "; uses hierarchical evaluation instead of volume_diffusion; close " +
                      (is_filled ? "the holes that fill_holes cannot close" : "the mesh (fill_holes)"));
 }
 
