@@ -64,14 +64,15 @@ constexpr NameList names_of(PixelFilter) {
 }
 
 enum class Method {
-  hierarchical,     ///< diffusion from the tree of samples
-  lambert,          ///< diffuse reflection on translucent surfaces: the cheapest method
-  direct,           ///< importance sampling of the BSSRDF: the noisy reference of `hierarchical`
-  volume,           ///< random walks inside the bodies: the reference without a model, noisy
-  volume_diffusion  ///< the diffusion equation inside the bodies: no kernel, no noise
+  hierarchical,      ///< diffusion from the tree of samples
+  lambert,           ///< diffuse reflection on translucent surfaces: the cheapest method
+  direct,            ///< importance sampling of the BSSRDF: the noisy reference of `hierarchical`
+  volume,            ///< random walks inside the bodies: the reference without a model, noisy
+  volume_diffusion,  ///< the diffusion equation inside the bodies: no kernel, no noise
+  automatic          ///< volume_diffusion or hierarchical, whichever suits a body
 };
-inline constexpr std::array<std::string_view, 5> kMethodNames{"hierarchical", "lambert", "direct", "volume",
-                                                              "volume_diffusion"};
+inline constexpr std::array<std::string_view, 6> kMethodNames{"hierarchical", "lambert",          "direct",
+                                                              "volume",       "volume_diffusion", "auto"};
 constexpr NameList names_of(Method) {
   return kMethodNames;
 }

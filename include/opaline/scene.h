@@ -131,8 +131,9 @@ struct Medium {
 // ---- shapes ---------------------------------------------------------------------------------------------
 
 struct MeshFile {
-  std::string path;         ///< as opened: the scene file's folder precedes a relative path
-  bool fill_holes = false;  ///< closes every hole before rendering
+  std::string path;  ///< as opened: the scene file's folder precedes a relative path
+  /// Closes every hole before rendering, or none. Unset: closes those of a translucent mesh if all are small.
+  std::optional<bool> fill_holes;
   /// If set: scales the largest side of the bounding box to this length (mm), centres x and z on the origin,
   /// and moves the mesh to y >= 0; applied before the shape's transform.
   std::optional<double> fit_size;
@@ -331,7 +332,7 @@ struct Laboratory {
 };
 
 struct Settings {
-  Method method = Method::hierarchical;
+  Method method = Method::automatic;
   EvaluatorKind evaluator = EvaluatorKind::automatic;
   double tolerance = 0.005;  ///< dual_tree, surface_cache: p99 of the relative error against the exact sum
   std::optional<double> sample_spacing;  ///< sqrt(area / samples), mm; none: from the mean free path

@@ -8,8 +8,8 @@
 
 #include "cli/report.h"
 #include "input/schema.h"
+#include "plan/expected_error.h"
 #include "scene/names.h"
-#include "subsurface/method.h"
 
 namespace opaline {
 namespace {
@@ -26,7 +26,7 @@ Json settings_in_use(const Scene& scene, const World& world, std::span<const Bod
                               {"samples", group.surface.samples.size()},
                               {"spacing_mm", group.surface.spacing() * world.unit},
                               {"profile", name_of(model.profile.kind)}});
-    if (const std::optional<double> error = method_of(group.plan.method).expected_error(model))
+    if (const std::optional<double> error = expected_error(model, group.plan.method))
       json["groups"].back()["expected_model_error"] = *error;
   }
   return json;

@@ -17,8 +17,9 @@ void precompute_frame(const PrecomputeArguments& arguments, Session& session, St
   stages.run("loading", [&] {
     Scene scene = load_scene(arguments.scene, arguments.overrides, frame.value_or(1));
     if (frame) session.expect_pictures(scene.camera_frames);
-    // The stages of the other methods are cheap, or have no entries in a cache.
-    if (scene.settings.method != Method::volume_diffusion) scene.settings.method = Method::hierarchical;
+    const Method method = scene.settings.method;  // stages of others are cheap, or have no entries in a cache
+    if (method != Method::automatic && method != Method::volume_diffusion)
+      scene.settings.method = Method::hierarchical;
     session.edit(std::move(scene));
     return 0;
   });

@@ -90,6 +90,14 @@ void check_quality(const RenderArguments& render) {
         throw bad_usage(fmt::format("{} chooses {} itself", option_of(render), key), "one of the two", text);
 }
 
+void name_method(const RenderArguments& arguments, Session& session) {
+  if (session.scene().settings.method != Method::automatic) return;
+  if (!chooses_settings(arguments) && !arguments.verify) return;
+  Scene scene = with_named_method(session);
+  if (arguments.time_budget || arguments.verify) scene.settings.method = Method::hierarchical;
+  session.edit(std::move(scene));
+}
+
 bool chooses_settings(const RenderArguments& arguments) {
   return arguments.time_budget || arguments.target_error;
 }
@@ -127,6 +135,7 @@ RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache*
     session.expect_pictures(scene.camera_frames);
     session.edit(std::move(scene));
   });
+  name_method(arguments, session);
   check_groups(session, "--target-error with --frames");
   RenderArguments settled = arguments;
   const KnownErrors known = choose_settings(stages, arguments, session);

@@ -14,6 +14,10 @@ namespace opaline {
 ///       incompatible options
 void check_quality(const RenderArguments& arguments);
 
+/// Replaces the session's method `auto` for options that choose settings or measure errors: by
+/// with_named_method for --target-error alone, else by hierarchical.
+void name_method(const RenderArguments& arguments, Session& session);
+
 /// Chooses the settings for --target-error or --time-budget, if given, and prints them. The session has the
 /// scene.
 /// error Error{bad_input}: a method without a choice of settings, also with --verify; a classic evaluator

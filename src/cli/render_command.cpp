@@ -143,6 +143,7 @@ Summary summarize(const Session& session, const Shading& shading) {
   Summary summary;
   summary.peak_memory = peak_memory();
   summary.model_error = expected_model_error(session.plan());
+  summary.unknown_models = bodies_of_unknown_error(session.plan());
   summary.queries = shading.picture.queries;
   summary.estimated_error = estimated_relative_error(shading.picture.image, shading.picture.translucent);
   if (shading.direct) {
@@ -233,6 +234,7 @@ double seconds_of_trial(const Session& session) {
 KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session& session,
                  const Shared& shared) {
   const Scene& scene = session.scene();
+  name_method(arguments, session);
   check_outputs_are_no_inputs(arguments, scene);
   check_method_options(arguments, scene);
   check_layers(arguments.layers, scene);

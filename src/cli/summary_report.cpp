@@ -67,9 +67,16 @@ std::string settings_error_text(const Summary& summary) {
   return "settings " + text + " (mean relative error of the diffuse light, worst channel)";
 }
 
-std::string model_error_text(double error) {
-  return fmt::format("model about {} (expected against random walks, rms, worst body and channel)",
-                     short_percent(error));
+/// Error due to the model of light transport.
+std::string model_error_text(const Summary& summary) {
+  std::string text;
+  if (summary.model_error)
+    text = fmt::format("model about {} (expected against random walks, rms, worst body and channel)",
+                       short_percent(*summary.model_error));
+  if (summary.unknown_models.empty()) return text;
+  const std::size_t count = summary.unknown_models.size();
+  return text + (text.empty() ? "model: unknown for " : "; unknown for ") +
+         (count == 1 ? summary.unknown_models[0] : fmt::format("{} bodies", count));
 }
 
 void print_text(const Summary& summary) {
@@ -93,7 +100,8 @@ void print_text(const Summary& summary) {
                              grouped(summary.walks), 100 * summary.walk_noise));
   const std::string settings_error = settings_error_text(summary);
   if (!settings_error.empty()) row("error", settings_error);
-  if (summary.model_error) row(settings_error.empty() ? "error" : "", model_error_text(*summary.model_error));
+  const std::string model_error = model_error_text(summary);
+  if (!model_error.empty()) row(settings_error.empty() ? "error" : "", model_error);
   constexpr std::size_t kMostLines = 3;
   std::vector<LightNoise> worst = summary.noise;
   std::ranges::stable_sort(worst, std::greater(), &LightNoise::relative_error);
@@ -143,6 +151,7 @@ Json done_json(const Summary& summary) {
             {"embree_cpu_seconds", summary.embree_seconds},
             {"outputs", summary.outputs}};
   if (summary.model_error) json["model_error"] = *summary.model_error;
+  if (!summary.unknown_models.empty()) json["bodies_of_unknown_model_error"] = summary.unknown_models;
   if (summary.budget) json["budget"] = budget_json(*summary.budget);
   if (!summary.repeat_command.empty()) json["again_by"] = summary.repeat_command;
   return json;

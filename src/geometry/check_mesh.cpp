@@ -145,7 +145,7 @@ class MeshChecker {
   void mend_winding_and_holes() {
     std::vector<Triangle> triangles = all_sites();
     EdgeTable edges(triangles, source_.positions.size());
-    if (settings_.fill_holes && !open_edges(edges).empty()) {
+    if (settings_.fill_holes != FillHoles::none && !open_edges(edges).empty()) {
       apply(find_winding(wound(), triangles, edges, false), false);
       fill(edges);
       places_matter_ = true;
@@ -197,7 +197,11 @@ class MeshChecker {
   }
 
   void fill(const EdgeTable& edges) {
-    const HoleFilling filling = fill_holes(source_.positions, all_sites(), open_edges(edges));
+    const std::vector<Edge> open = open_edges(edges);
+    const HoleFilling filling = fill_holes(source_.positions, all_sites(), open, settings_.fill_holes);
+    if (settings_.fill_holes == FillHoles::if_small && filling.filled > 0)
+      warn(std::to_string(filling.filled) + (filling.filled == 1 ? " small hole" : " small holes") + ", " +
+           std::to_string(open.size()) + " boundary edges, closed (\"fill_holes\": false leaves them open)");
     source_.triangles.insert(source_.triangles.end(), filling.triangles.begin(), filling.triangles.end());
     if (!origins_.empty()) origins_.resize(source_.triangles.size(), kNew);
     report_.holes_filled = filling.filled;

@@ -7,13 +7,14 @@
 
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
+#include "geometry/repair_mesh.h"
 #include "geometry/source_mesh.h"
 
 namespace opaline {
 
 struct CheckSettings {
   std::string name;  ///< the file or shape, for messages
-  bool fill_holes = false;
+  FillHoles fill_holes = FillHoles::none;
   bool smooth = true;        ///< gives vertices normals
   bool may_be_open = false;  ///< no warnings of boundary edges
   bool has_inside = false;   ///< winds open parts outward, too
@@ -22,7 +23,8 @@ struct CheckSettings {
 /// Results of mesh checks depending on connectivity only, not on positions.
 struct CheckMemory {
   bool holds = false, recalled = false;  ///< recalled: the last call used it
-  bool fill_holes = false, may_be_open = false, has_inside = false;
+  FillHoles fill_holes = FillHoles::none;
+  bool may_be_open = false, has_inside = false;
   std::vector<Triangle> given;  ///< before anything was done to them
   std::vector<std::uint32_t> same,
       site;                      ///< first vertex at the same position, with its normal and without
@@ -34,7 +36,7 @@ struct CheckMemory {
 };
 
 /// Welds exactly equal vertices, drops and counts zero-area and duplicate triangles, winds the rest
-/// consistently and outward, fills holes on request, counts open and non-manifold edges, and completes the
+/// consistently and outward, fills holes, counts open and non-manifold edges, and completes the
 /// normals. Zero-area triangles are those of is_sliver.
 /// in    positions finite; normals of any length, missing if zero or not finite; memory: null, or results of
 ///       earlier calls, reused for the same triangles with equal connectivity; does not change the result

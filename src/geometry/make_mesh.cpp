@@ -119,7 +119,10 @@ CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh me
   const bool is_part = file != nullptr && !file->part.empty();  // part of an asset; its surfaces may be open
   settings.may_be_open = (is_part || std::holds_alternative<QuadShape>(shape.source)) && !shape.medium;
   settings.has_inside = shape.medium.has_value();
-  if (file != nullptr) settings.fill_holes = file->fill_holes;
+  if (file != nullptr && file->fill_holes)
+    settings.fill_holes = *file->fill_holes ? FillHoles::all : FillHoles::none;
+  else if (shape.medium)
+    settings.fill_holes = FillHoles::if_small;
   place(mesh, shape.to_world, name);
   return check_mesh(std::move(mesh), settings, memory);
 }

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <exception>
 #include <map>
+#include <numbers>
 
 namespace opaline {
 namespace {
@@ -24,6 +25,8 @@ using Halfedge = OpenMesh::HalfedgeHandle;
 // Number of a hole's edges up to which all triangulations are compared, in cubic time. The faster search
 // within a Delaunay tetrahedralization breaks ties by addresses, so its result is not reproducible.
 constexpr std::size_t largest_cubic_hole = 500;
+// Number of edges up to which a fan replaces a triangulation that CGAL does not find.
+constexpr std::size_t kFewEdges = 8;
 
 class HoleFiller {
  public:
@@ -33,10 +36,12 @@ class HoleFiller {
     build(triangles);
   }
 
-  HoleFilling run() {
+  HoleFilling run(FillHoles which) {
     std::vector<Halfedge> borders;
     pmp::extract_boundary_cycles(mesh_, std::back_inserter(borders));
+    if (which == FillHoles::if_small && !are_small(borders)) return {};
     for (const Halfedge border : borders) fill(border);
+    if (which == FillHoles::if_small && !result_.unfilled.empty()) return {};
     return std::move(result_);
   }
 
@@ -78,6 +83,28 @@ class HoleFiller {
     for (std::size_t i = before; i < points.size(); ++i) original_.push_back(by_position.at(points[i]));
   }
 
+  bool are_small(const std::vector<Halfedge>& borders) const {
+    constexpr double kLargest = 0.01, kLargestSum = 0.03;  // fraction of the mesh's area
+    double area = 0, sum = 0, largest = 0;
+    for (const auto face : mesh_.faces()) area += mesh_.calc_face_area(face);
+    for (const Halfedge border : borders) {
+      double around = 0, fan = 0;
+      std::size_t edges = 0;
+      const HalfedgeMesh::Point apex = mesh_.point(mesh_.from_vertex_handle(border));
+      for (const Halfedge h : CGAL::halfedges_around_face(border, mesh_)) {
+        around += mesh_.calc_edge_length(h);
+        fan += 0.5 * cross(mesh_.point(mesh_.from_vertex_handle(h)) - apex, mesh_.calc_edge_vector(h)).norm();
+        ++edges;
+      }
+      if (edges > largest_cubic_hole) return false;
+      // Upper bounds: a circle by the isoperimetric inequality, and one triangulation.
+      const double hole = std::min(around * around / (4 * std::numbers::pi), fan);
+      largest = std::max(largest, hole);
+      sum += hole;
+    }
+    return largest < kLargest * area && sum < kLargestSum * area;
+  }
+
   std::uint32_t original(OpenMesh::VertexHandle v) const { return original_[std::size_t(v.idx())]; }
 
   /// True if every edge of the border is open in the mesh as it was, not cut where three triangles meet.
@@ -98,29 +125,47 @@ class HoleFiller {
       result_.unfilled.push_back(edges);
       return;
     }
-    std::vector<OpenMesh::FaceHandle> patch;
-    try {
-      const auto options = CGAL::parameters::use_delaunay_triangulation(edges > largest_cubic_hole)
-                               .do_not_use_cubic_algorithm(edges > largest_cubic_hole);
-#if CGAL_VERSION_MAJOR >= 6
-      pmp::triangulate_hole(mesh_, border, options.face_output_iterator(std::back_inserter(patch)));
-#else
-      pmp::triangulate_hole(mesh_, border, std::back_inserter(patch), options);
-#endif
-    } catch (const std::exception&) {
-      patch.clear();  // CGAL's assertion on degenerate holes
-    }
+    std::vector<Triangle> patch = edges > 3 ? smallest_patch(border, edges) : fan(border);
+    if (patch.empty() && edges <= kFewEdges) patch = fan(border);
     if (patch.empty()) {
       result_.unfilled.push_back(edges);
       return;
     }
     ++result_.filled;
-    for (const auto face : patch) {
-      Triangle triangle{};
+    result_.triangles.insert(result_.triangles.end(), patch.begin(), patch.end());
+  }
+
+  /// Empty: CGAL finds none, as for vertices on a line.
+  std::vector<Triangle> smallest_patch(Halfedge border, std::size_t edges) {
+    std::vector<OpenMesh::FaceHandle> faces;
+    try {
+      const auto options = CGAL::parameters::use_delaunay_triangulation(edges > largest_cubic_hole)
+                               .do_not_use_cubic_algorithm(edges > largest_cubic_hole);
+#if CGAL_VERSION_MAJOR >= 6
+      pmp::triangulate_hole(mesh_, border, options.face_output_iterator(std::back_inserter(faces)));
+#else
+      pmp::triangulate_hole(mesh_, border, std::back_inserter(faces), options);
+#endif
+    } catch (const std::exception&) {
+      return {};  // CGAL's assertion on degenerate holes
+    }
+    std::vector<Triangle> patch;
+    for (const auto face : faces) {
+      Triangle& triangle = patch.emplace_back();
       std::size_t k = 0;
       for (const auto v : mesh_.fv_range(face)) triangle[k++] = original(v);
-      result_.triangles.push_back(triangle);
     }
+    return patch;
+  }
+
+  /// Triangles from the first vertex to each edge.
+  std::vector<Triangle> fan(Halfedge border) const {
+    std::vector<std::uint32_t> around;
+    for (const Halfedge h : CGAL::halfedges_around_face(border, mesh_))
+      around.push_back(original(mesh_.from_vertex_handle(h)));
+    std::vector<Triangle> patch;
+    for (std::size_t i = 2; i < around.size(); ++i) patch.push_back({around[0], around[i - 1], around[i]});
+    return patch;
   }
 
   const std::vector<Vec3d>& positions_;
@@ -133,8 +178,8 @@ class HoleFiller {
 }  // namespace
 
 HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                       const std::vector<Edge>& open_edges) {
-  return HoleFiller(positions, triangles, open_edges).run();
+                       const std::vector<Edge>& open_edges, FillHoles which) {
+  return HoleFiller(positions, triangles, open_edges).run(which);
 }
 
 }  // namespace opaline

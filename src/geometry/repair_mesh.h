@@ -13,6 +13,10 @@ namespace opaline {
 
 using Edge = std::array<std::uint32_t, 2>;  ///< lower vertex first
 
+/// Holes to fill: none, all of them, or all of them if each has less than 1 % of the mesh's area and their sum
+/// less than 3 %. The area of a hole is bounded by its circumference: that of a circle, the largest.
+enum class FillHoles { none, if_small, all };
+
 struct HoleFilling {
   std::vector<Triangle> triangles;  ///< to be added, on existing vertices
   std::size_t filled = 0;
@@ -21,10 +25,11 @@ struct HoleFilling {
 
 /// Triangulates the holes of a mesh without new vertices.
 /// in    triangles: consistently wound, no duplicates, no vertex twice in a triangle; open_edges: the edges
-///       with one triangle, ascending
+///       with one triangle, ascending; which: all or if_small
+/// out   if_small: nothing, unless all holes are small and can be filled
 /// from  Liepa 2003, by CGAL's triangulate_hole; holes of more than 500 edges only by the faster search over
 ///       a Delaunay triangulation
 HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                       const std::vector<Edge>& open_edges);
+                       const std::vector<Edge>& open_edges, FillHoles which);
 
 }  // namespace opaline

@@ -183,7 +183,9 @@ std::span<const Member<Settings>> settings_members() {
   static const std::vector<Member<Settings>> table{
       member<&Settings::method>(
           "method", choice, "", kFiniteNumber, "",
-          "`\"hierarchical\"`: BSSRDF with a radial profile, by hierarchical evaluation; `\"lambert\"`: "
+          "`\"auto\"`: for each body `\"volume_diffusion\"`, or `\"hierarchical\"` if its mesh is open, its "
+          "profile or the evaluator is set, or cells would cost far more; `\"hierarchical\"`: BSSRDF with a "
+          "radial profile, by hierarchical evaluation; `\"lambert\"`: "
           "diffuse reflection, usually fastest; `\"direct\"`: the same BSSRDF by unbiased Monte Carlo "
           "sampling, slow and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the "
           "reference; `\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the "

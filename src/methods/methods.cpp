@@ -3,6 +3,7 @@
 #include <array>
 
 #include "bodies/surface_textures.h"
+#include "methods/automatic/automatic_method.h"
 #include "methods/direct/direct_method.h"
 #include "methods/hierarchical/hierarchical_method.h"
 #include "methods/lambert/lambert_method.h"
@@ -17,9 +18,10 @@ const SubsurfaceMethod& method_of(Method method) {
   static const DirectMethod direct;
   static const VolumeMethod volume;
   static const VolumeDiffusionMethod volume_diffusion;
+  static const AutomaticMethod automatic;
   // In the order of the enumeration.
-  static const auto kAll =
-      std::to_array<const SubsurfaceMethod*>({&hierarchical, &lambert, &direct, &volume, &volume_diffusion});
+  static const auto kAll = std::to_array<const SubsurfaceMethod*>(
+      {&hierarchical, &lambert, &direct, &volume, &volume_diffusion, &automatic});
   static_assert(std::tuple_size_v<decltype(kAll)> == kMethodNames.size());
   return *kAll[std::size_t(method)];
 }

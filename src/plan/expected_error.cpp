@@ -11,6 +11,7 @@
 namespace opaline {
 
 std::optional<double> expected_error(const BodyModel& model, Method method) {
+  if (!method_of(method).has_model()) return {};
   return method_of(method).expected_error(model);
 }
 
@@ -20,6 +21,14 @@ std::optional<double> expected_model_error(const Plan& plan) {
     if (const std::optional<double> error = expected_error(group.model, group.method))
       largest = std::max(largest.value_or(0), *error);
   return largest;
+}
+
+std::vector<std::string> bodies_of_unknown_error(const Plan& plan) {
+  std::vector<std::string> names;
+  for (const BodyPlan& group : plan.groups)
+    if (method_of(group.method).has_model() && !expected_error(group.model, group.method))
+      names.push_back(group.name);
+  return names;
 }
 
 std::vector<std::string> model_warnings(const Plan& plan) {

@@ -15,6 +15,8 @@ namespace opaline {
 std::optional<double> expected_error(const BodyModel& model, Method method);
 /// The largest expected error of all bodies.
 std::optional<double> expected_model_error(const Plan& plan);
+/// Names of bodies with a model of unknown error: open meshes, and profiles set by the scene.
+std::vector<std::string> bodies_of_unknown_error(const Plan& plan);
 /// Warnings of bodies with an expected error above 20 %, one line each.
 std::vector<std::string> model_warnings(const Plan& plan);
 

@@ -1,18 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "quality/target_error.h"
 #include "scene/names.h"
 
 namespace opaline {
 
+Scene with_named_method(const Session& session) {
+  Scene scene = session.scene();
+  if (scene.settings.method != Method::automatic) return scene;
+  const std::vector<BodyPlan>& bodies = session.plan().groups;
+  const bool is_inside = !bodies.empty() && std::ranges::all_of(bodies, [](const BodyPlan& body) {
+    return body.method == Method::volume_diffusion;
+  });
+  scene.settings.method = is_inside ? Method::volume_diffusion : Method::hierarchical;
+  return scene;
+}
+
 std::vector<std::string> chosen_overrides(const Session& session, std::size_t entry_samples) {
   if (session.scene().lights.empty()) return {};  // nothing was chosen
   const Settings& settings = session.scene().settings;
   if (settings.method == Method::direct) return {fmt::format("settings.entry_samples={}", entry_samples)};
+  const std::string method = fmt::format("settings.method={}", name_of(settings.method));
   if (settings.method == Method::volume_diffusion)
-    return {fmt::format("settings.cell_size={}", settings.cell_size)};
-  std::vector<std::string> overrides{fmt::format("settings.tolerance={}", settings.tolerance),
+    return {method, fmt::format("settings.cell_size={}", settings.cell_size)};
+  std::vector<std::string> overrides{method, fmt::format("settings.tolerance={}", settings.tolerance),
                                      fmt::format("settings.evaluator={}", name_of(settings.evaluator))};
   const std::vector<BodyPlan>& groups = session.plan().groups;
   if (groups.size() == 1)

@@ -17,7 +17,8 @@ struct AddSource {
   const StageKey& contents;  // contents of a mesh file
   void operator()(const MeshFile& mesh) const {
     key.add(mesh.path).add(contents).add(mesh.part);
-    key.add(mesh.fill_holes).add(mesh.fit_size.value_or(0));
+    key.add(mesh.fill_holes.has_value()).add(mesh.fill_holes.value_or(false));
+    key.add(mesh.fit_size.value_or(0));
     key.add(mesh.vertex_colors.has_value()).add(mesh.vertex_colors.value_or(false));
     key.add(mesh.crease_angle.value_or(-1));
   }

@@ -40,7 +40,9 @@ class SubsurfaceMethod {
   virtual bool may_use_surface_cache() const { return false; }
   /// Layers of an image beside those of every method.
   virtual MethodLayers layers() const { return {.variance = false, .error = true}; }
-  /// Relative error of the model, against random walks; none: unknown, or no model.
+  /// False if no model stands between the method and random walks.
+  virtual bool has_model() const { return true; }
+  /// Relative error of the model, against random walks; none: unknown.
   virtual std::optional<double> expected_error(const BodyModel& model) const { return model.expected_error; }
   /// False if surfaces cannot light each other.
   virtual bool supports_bounces() const { return true; }

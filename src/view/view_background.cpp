@@ -132,14 +132,16 @@ void ViewBackground::work(const Job& job, const BackgroundWork& wanted) {
 }
 
 void ViewBackground::choose(const Job& job, double target_error) {
-  const Settings& settings = job.scene.settings;
+  session_->edit(job.scene);
+  const Scene scene = with_named_method(*session_);
+  const Settings& settings = scene.settings;
   const bool is_volume = settings.method == Method::volume_diffusion;
   if (!is_volume && (settings.method != Method::hierarchical || settings.evaluator == EvaluatorKind::classic))
     throw Error(ErrorKind::bad_input, {}, 0, 0,
                 "a target error requires hierarchical evaluation or volume_diffusion",
                 "the method volume_diffusion, or hierarchical with an evaluator other than classic");
   const auto reach = is_volume ? reach_volume_error : reach_error;
-  ChosenSettings chosen{job.shown->revision, reach(*session_, job.scene, target_error, &monitor_), {}};
+  ChosenSettings chosen{job.shown->revision, reach(*session_, scene, target_error, &monitor_), {}};
   chosen.overrides = chosen_overrides(*session_);
   chosen.overrides.push_back(
       fmt::format("settings.light_samples={}", session_->scene().settings.light_samples));

@@ -105,6 +105,7 @@ std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& pl
                   {"stages", plan.stages},
                   {"warnings", plan.warnings},
                   {"model_error", expected_model_error(plan).value_or(0)},
+                  {"model_is_unknown", !bodies_of_unknown_error(plan).empty()},
                   {"memory", "about " + short_bytes(plan.bytes) + " at the peak"}});
 }
 

@@ -370,7 +370,7 @@ TEST(CliRender, TextLogAndQuiet) {
 }
 
 // Claim: the closing line tells the settings' error and the model's apart, and warns of a model that is off by more than
-// 20 %. Source: expected_error.h. Fails if: the settings' error stands for all.
+// 20 %, or that its error is unknown. Source: expected_error.h. Fails if: the settings' error stands for all.
 TEST(CliRender, TellsTheModelsError) {
   const SceneFolder folder;
   const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
@@ -387,6 +387,10 @@ TEST(CliRender, TellsTheModelsError) {
   const Outcome thick = run_program({"render", folder.scene, "-o", folder.file("a.exr")});
   EXPECT_TRUE(contains(thick.out, "model about ")) << thick.out;
   EXPECT_EQ(thick.err, "");
+  const Outcome unknown =
+      run_program({"render", plate, "-o", folder.file("a.exr"), "--resolution", "32x32", "--set",
+                   "settings.samples=2000", "--set", "media.jade.profile=better_dipole"});
+  EXPECT_TRUE(contains(unknown.out, "model: unknown for slab\n")) << unknown.out;
 }
 
 // Claim: the exposure brightens the PNG alone. Source: scene.h. Fails if: it is applied to the EXR, or not at

@@ -12,7 +12,7 @@ class LambertMethod : public SubsurfaceMethod {
   bool needs_samples() const override { return false; }
   bool spreads_light() const override { return false; }
   MethodLayers layers() const override { return {}; }
-  std::optional<double> expected_error(const BodyModel&) const override { return {}; }
+  bool has_model() const override { return false; }
   double samples_with_shadow_rays(const Plan&) const override { return 0; }
   double seconds_of_pixel(const Scene&, const Lighting& lighting) const override {
     return kSecondsOfShadowRay * lighting.rays;

@@ -11,7 +11,7 @@ class VolumeMethod : public SubsurfaceMethod {
   bool needs_transmitted_light() const override { return false; }
   bool follows_textures_inside() const override { return true; }
   bool uses_radial_profile() const override { return false; }
-  std::optional<double> expected_error(const BodyModel&) const override { return {}; }
+  bool has_model() const override { return false; }
   bool supports_bounces() const override { return false; }
   bool separates_lights() const override { return false; }
   BodyMemory memory(const PlanningInput& input, const BodyPlan& body) const override;

@@ -40,7 +40,7 @@ void warn_of_open_mesh(const Scene& scene, const BodyPlan& body, std::vector<std
   if (body.thickness > 0 || !(body.smallest_mean_free_path > 0)) return;
   const bool is_filled = std::ranges::all_of(body.meshes, [&](std::uint32_t mesh) {
     const auto* file = std::get_if<MeshFile>(&scene.shapes[mesh].source);
-    return file != nullptr && file->fill_holes;
+    return file != nullptr && file->fill_holes.value_or(false);
   });
   warnings.push_back(body.name + ": " + body.reason_against_method +
                      "; uses hierarchical evaluation instead of volume_diffusion; close " +

@@ -291,8 +291,10 @@ const takes = {
     if (message.revision !== plan.revision) return;
     report = message;
     one("error").dataset.revision = message.revision;
-    one("error").textContent = [[message.error, "settings"], [plan.model_error, "model"]].filter(([error]) => error > 0)
-      .map(([error, of]) => `${of} error about ${Number((100 * error).toPrecision(2))} %`).join(", ");
+    const errors = [[message.error, "settings"], [plan.model_error, "model"]].filter(([error]) => error > 0)
+      .map(([error, of]) => `${of} error about ${Number((100 * error).toPrecision(2))} %`);
+    if (plan.model_is_unknown) errors.push(plan.model_error > 0 ? "unknown for some bodies" : "model error unknown");
+    one("error").textContent = errors.join(", ");
     showPlan();
   },
   work: ({stage, done, total}) => {

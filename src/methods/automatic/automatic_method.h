@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `auto`: for each body, the diffusion equation or a radial profile.
+#pragma once
+
+#include "methods/volume_diffusion/volume_diffusion_method.h"
+
+namespace opaline {
+
+/// `volume_diffusion`, except for bodies that it does not suit: `hierarchical` evaluates those whose profile
+/// or evaluator the scene sets, open meshes, and bodies where cells cost far more. The choice depends on
+/// bodies, media and lights alone, not on camera, resolution or clock.
+class AutomaticMethod : public VolumeDiffusionMethod {
+ public:
+  void plan(const PlanningInput& input, BodyPlan& body, std::vector<std::string>& warnings) const override;
+};
+
+}  // namespace opaline

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The method `auto`: the choice for each body, and its reasons.
+#include "session_test.h"
+#include "support/pictures.h"
+
+namespace opaline::test {
+namespace {
+
+/// two_balls without profiles.
+Scene open_choice() {
+  Scene scene = two_balls();
+  for (Medium& medium : scene.media) medium.profile.reset();
+  return scene;
+}
+
+Scene with_method(Scene scene, Method method) {
+  scene.settings.method = method;
+  return scene;
+}
+
+std::vector<Method> chosen(const Scene& scene) {
+  Session session;
+  session.edit(scene);
+  std::vector<Method> methods;
+  for (const BodyPlan& body : session.plan().groups) methods.push_back(body.method);
+  return methods;
+}
+
+bool has_reason(const Scene& scene, const std::string& reason) {
+  Session session;
+  session.edit(scene);
+  return std::ranges::any_of(session.plan().stages, [&](const std::string& stage) {
+    return stage.find(reason) != std::string::npos;
+  });
+}
+
+// Claim: `auto` is the default, and its image is that of volume_diffusion, to the bit. Source: automatic_method.h.
+// Tolerance: none. Fails if: the tree is chosen, or the scene's method is taken for a body's.
+TEST(AutomaticMethod, SolvesClosedBodies) {
+  const Scene scene = with_method(open_choice(), Settings().method);
+  EXPECT_EQ(scene.settings.method, Method::automatic);
+  EXPECT_EQ(chosen(scene), (std::vector{Method::volume_diffusion, Method::volume_diffusion}));
+  EXPECT_TRUE(same_pixels(cold_picture(scene), cold_picture(with_method(scene, Method::volume_diffusion))));
+}
+
+// Claim: a body whose profile is set is that of hierarchical, to the bit, with the reason in the plan; an evaluator sets
+// the method of all bodies. Source and tolerance: as above. Fails if: settings of hierarchical are ignored.
+TEST(AutomaticMethod, SettingsOfHierarchicalNameIt) {
+  Scene scene = with_method(open_choice(), Method::automatic);
+  scene.media[0].profile = ProfileKind::dipole;
+  scene.media[1].profile = ProfileKind::dipole;
+  EXPECT_EQ(chosen(scene), (std::vector{Method::hierarchical, Method::hierarchical}));
+  EXPECT_TRUE(has_reason(scene, "the scene sets its profile"));
+  EXPECT_TRUE(same_pixels(cold_picture(scene), cold_picture(with_method(scene, Method::hierarchical))));
+  scene.media[1].profile.reset();
+  EXPECT_EQ(chosen(scene), (std::vector{Method::hierarchical, Method::volume_diffusion}));
+  Scene classic = with_method(open_choice(), Method::automatic);
+  classic.settings.evaluator = EvaluatorKind::classic;
+  EXPECT_EQ(chosen(classic), (std::vector{Method::hierarchical, Method::hierarchical}));
+  EXPECT_TRUE(has_reason(classic, "the scene sets its evaluator"));
+}
+
+// Claim: the choice depends on neither camera nor film. Source: automatic_method.h. Fails if: the cost of pixels counts.
+TEST(AutomaticMethod, IsIndependentOfTheCamera) {
+  Scene scene = with_method(open_choice(), Method::automatic);
+  const std::vector<Method> methods = chosen(scene);
+  scene.camera.position = {0, 400, 4000};
+  scene.film.resolution = {4000, 3000};
+  scene.film.samples_per_pixel = 64;
+  EXPECT_EQ(chosen(scene), methods);
+}
+
+// Claim: with thousands of lights, whose light would be traced into the body one by one, hierarchical evaluation is chosen
+// for its cost, and the plan prints both times. Source: seconds of the methods. Fails if: cost does not count.
+TEST(AutomaticMethod, ManyLightsAreTooDearForCells) {
+  Scene scene = with_method(open_choice(), Method::automatic);
+  for (int i = 0; i < 3000; ++i) scene.lights.push_back(point_light({100. + i, 50., double(i % 7)}, Rgb(10)));
+  EXPECT_EQ(chosen(scene), (std::vector{Method::hierarchical, Method::hierarchical}));
+  EXPECT_TRUE(has_reason(scene, "the diffusion equation would take "));
+}
+
+// Claim: a textured medium in an open mesh, which no cells fill, keeps its texture, as by hierarchical, to the bit.
+// Source: surface_textures.cpp. Fails if: the texture is left to the inside of the body, where nothing reads it.
+TEST(AutomaticMethod, OpenMeshesKeepTheirTextures) {
+  const ScratchFolder folder;
+  put_bytes(
+      folder.file("open.obj"),
+      "v -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\nv 0 0 -20\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt .5 .5\n"
+      "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 2/2 1/1 5/5\nf 3/3 2/2 5/5\n");
+  put_exr(folder.file("t.exr"), 8, 1, [](int x, int) {
+    return std::array<double, 3>{x % 2 ? .2 : .8, .5, .3};
+  });
+  const std::string text =
+      R"({"media": {"m": {"subsurface_color": {"texture": "t.exr"}, "subsurface_radius": 1,
+    "texture_mix": "medium"}}, "shapes": [{"file": "open.obj", "medium": "m"}],
+    "lights": [{"type": "point", "position": [0, 0, 90], "intensity": 9000}],
+    "camera": {"position": [0, 0, 100], "look_at": [0, 0, 0]}, "film": {"resolution": [24, 24]}})";
+  EXPECT_TRUE(
+      same_pixels(picture_of(folder, text), picture_of(folder, text, {"settings.method=hierarchical"})));
+}
+
+}  // namespace
+}  // namespace opaline::test
