@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "asset_files/asset_file.h"
+#include "assets/gltf_ranges.h"
 #include "assets/gltf_texture.h"
 
 namespace opaline {
@@ -22,7 +23,7 @@ constexpr double kMillimetres = 1000;  // in glTF's metre
 // Range of a channel's attenuation over the attenuation distance, excluding opaque and lossless channels.
 constexpr double kDarkest = 1e-6, kClearest = .999;
 constexpr double kMostAnisotropy = .99;
-constexpr double kLeastIor = .1, kMostIor = 10, kGltfIor = 1.5;
+constexpr double kLeastIor = 1, kMostIor = 10, kGltfIor = 1.5;
 
 /// Scattering of a volume, in either spelling of the draft.
 struct Scatter {
@@ -45,8 +46,7 @@ Shares single_scattering(double color, double g) {
 
 Vec3d color_of(const GltfRecord& record, const char* key, const Vec3d& otherwise) {
   const std::vector<double> c = record.numbers(key, 3);
-  return c.empty() ? otherwise
-                   : Vec3d(std::clamp(c[0], 0., 1.), std::clamp(c[1], 0., 1.), std::clamp(c[2], 0., 1.));
+  return c.empty() ? otherwise : Vec3d(c[0], c[1], c[2]);
 }
 
 constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
@@ -60,13 +60,13 @@ struct BaseLayer {
 };
 
 BaseLayer metallic_roughness(const GltfRecord& pbr) {
-  BaseLayer base{.metalness = std::clamp(pbr.number("metallicFactor", 1), 0., 1.),
-                 .roughness = std::clamp(pbr.number("roughnessFactor", 1), 0., 1.),
+  BaseLayer base{.metalness = pbr.number("metallicFactor", 1),
+                 .roughness = pbr.number("roughnessFactor", 1),
                  .color_texture = pbr.record("baseColorTexture"),
                  .roughness_texture = pbr.record("metallicRoughnessTexture"),
                  .color_texture_name = "baseColorTexture"};
   if (const std::vector<double> c = pbr.numbers("baseColorFactor", 4); !c.empty())
-    for (std::size_t i = 0; i < 3; ++i) base.color[i] = std::clamp(c[i], 0., 1.);
+    for (std::size_t i = 0; i < 3; ++i) base.color[i] = c[i];
   return base;
 }
 
@@ -78,13 +78,13 @@ BaseLayer specular_glossiness(const GltfRecord& model) {
     return std::sqrt(.299 * c.x * c.x + .587 * c.y * c.y + .114 * c.z * c.z);
   };
   BaseLayer base{.metalness = 0,
-                 .roughness = 1 - std::clamp(model.number("glossinessFactor", 1), 0., 1.),
+                 .roughness = 1 - model.number("glossinessFactor", 1),
                  .color_texture = model.record("diffuseTexture"),
                  .roughness_texture = model.record("none"),
                  .color_texture_name = "diffuseTexture"};
   Vec3d diffuse(1);
   if (const std::vector<double> c = model.numbers("diffuseFactor", 4); !c.empty())
-    for (std::size_t i = 0; i < 3; ++i) diffuse[i] = std::clamp(c[i], 0., 1.);
+    for (std::size_t i = 0; i < 3; ++i) diffuse[i] = c[i];
   const Vec3d specular = color_of(model, "specularFactor", Vec3d(1));
   const double rest = 1 - max_component(specular), bright = brightness(specular);
   if (bright > kDielectric) {
@@ -104,7 +104,8 @@ class MaterialTranslator {
  public:
   MaterialTranslator(const GltfModel& gltf, const MaterialUse& use, AssetScene& scene)
       : gltf_(gltf),
-        material_(gltf.record("materials", use.index)),
+        json_(material_within_ranges(gltf, use.index, scene)),
+        material_(gltf.path, record_name("materials", use.index), json_),
         extensions_(material_.record("extensions")),
         base_(has(kSpecularGlossiness) ? specular_glossiness(values(kSpecularGlossiness))
                                        : metallic_roughness(material_.record("pbrMetallicRoughness"))),
@@ -124,7 +125,7 @@ class MaterialTranslator {
       add_entry(surface);
     const GltfRecord normal = material_.record("normalTexture");
     if (std::optional<Json> normals = texture(normal, "normalTexture")) {
-      (*normals)["scale"] = std::max(normal.number("scale", 1), 0.);
+      (*normals)["scale"] = normal.number("scale", 1);
       surface.keys["normal_map"] = std::move(*normals);
       translated("normalTexture: " + tangents());
     }
@@ -186,7 +187,7 @@ class MaterialTranslator {
     if (metalness > 0) surface.keys["metalness"] = times(channel(both, "b"), metalness, 1.0);
     surface.keys["specular_roughness"] = times(channel(both, "g"), roughness, 1.0);
     const double ior = index_of_refraction();
-    if (ior > 1 && ior != kGltfIor) surface.keys["specular_ior"] = ior;
+    if (ior != kGltfIor) surface.keys["specular_ior"] = ior;
     add_specular_weight(surface.keys);
     translated(fmt::format("{} -> reflectance {}, metalness {:.3g}, specular_roughness {:.3g} (opaque)",
                            has(kSpecularGlossiness) ? "diffuseFactor, specularFactor, glossinessFactor"
@@ -198,7 +199,7 @@ class MaterialTranslator {
   double add_grain(Json& keys) {
     const double roughness = base_.roughness;
     const GltfRecord extension = values("KHR_materials_anisotropy");
-    const double strength = std::clamp(extension.number("anisotropyStrength", 0), 0., 1.);
+    const double strength = extension.number("anisotropyStrength", 0);
     if (!(strength > 0)) return roughness;
     const double across = roughness * roughness, along = across + (1 - across) * strength * strength;
     const double anisotropy = 1 - across / along, rotation = extension.number("anisotropyRotation", 0);
@@ -219,7 +220,7 @@ class MaterialTranslator {
   void add_specular_weight(Json& keys) {
     if (!has("KHR_materials_specular")) return;
     const GltfRecord specular = values("KHR_materials_specular");
-    const double weight = std::clamp(specular.number("specularFactor", 1), 0., 1.);
+    const double weight = specular.number("specularFactor", 1);
     if (weight < 1) keys["specular_weight"] = weight;
     translated(fmt::format("specularFactor -> specular_weight {:.3g}", weight));
     const Vec3d color = color_of(specular, "specularColorFactor", Vec3d(1));
@@ -246,8 +247,8 @@ class MaterialTranslator {
   void add_entry(SurfaceTranslation& surface) {
     constexpr const char *kClear = "KHR_materials_transmission",
                          *kDiffuse = "KHR_materials_diffuse_transmission";
-    const double clear = std::clamp(values(kClear).number("transmissionFactor", 0), 0., 1.),
-                 diffuse = std::clamp(values(kDiffuse).number("diffuseTransmissionFactor", 0), 0., 1.);
+    const double clear = values(kClear).number("transmissionFactor", 0),
+                 diffuse = values(kDiffuse).number("diffuseTransmissionFactor", 0);
     const double weight = clear + (1 - clear) * diffuse;
     const Vec3d color = color_of(values(kDiffuse), "diffuseTransmissionColorFactor", Vec3d(1));
     std::optional<Json> base = texture(base_.color_texture, base_.color_texture_name);
@@ -287,7 +288,7 @@ class MaterialTranslator {
   std::optional<Scatter> read_scatter() const {
     if (has("KHR_materials_scatter")) {
       const GltfRecord scatter = values("KHR_materials_scatter");
-      const double strength = std::clamp(scatter.number("scatterStrengthFactor", 1), 0., 1.);
+      const double strength = scatter.number("scatterStrengthFactor", 1);
       return Scatter{color_of(scatter, "multiscatterColorFactor", Vec3d(1)) * strength,
                      scatter.number("scatterAnisotropy", 0)};
     }
@@ -299,7 +300,7 @@ class MaterialTranslator {
   double index_of_refraction() {
     const double ior = values("KHR_materials_ior").number("ior", kGltfIor);
     if (ior >= kLeastIor && ior <= kMostIor) return ior;
-    not_carried(fmt::format("ior {:.4g}, outside {} to {}: uses {}", ior, kLeastIor, kMostIor, kGltfIor));
+    warn(fmt::format("ior {:.4g}, outside {} to {}: uses {}", ior, kLeastIor, kMostIor, kGltfIor));
     return kGltfIor;
   }
 
@@ -399,6 +400,7 @@ class MaterialTranslator {
   }
 
   const GltfModel& gltf_;
+  Json json_;
   GltfRecord material_, extensions_;
   BaseLayer base_;
   const MaterialUse& use_;

@@ -5,6 +5,8 @@
 
 #include <numbers>
 
+#include "assets/gltf_ranges.h"
+
 namespace opaline {
 namespace {
 
@@ -39,7 +41,9 @@ double luminance(const Vec3d& color) {
 class LightTranslator {
  public:
   LightTranslator(const GltfModel& gltf, std::size_t index, const Transform& to_world, AssetScene& scene)
-      : light_(gltf.record("lights", index)),
+      : path_(gltf.path),
+        json_(light_within_ranges(gltf, index, scene)),
+        light_(path_, record_name("lights", index), json_),
         type_(light_.text("type")),
         intensity_(light_.number("intensity", 1)),
         to_world_(to_world),
@@ -47,9 +51,8 @@ class LightTranslator {
 
   void run(const std::string& name, const std::string& label) {
     const Vec3d brightness = color() * intensity_;
-    if (!(intensity_ >= 0 && luminance(brightness) <= 1e20))
-      light_.fail("intensity", "is not a brightness", "a color and an intensity of at least 0",
-                  fmt::format("{}", intensity_));
+    if (!(luminance(brightness) <= 1e20))
+      light_.fail("intensity", "is too large", "at most 1e20", fmt::format("{}", intensity_));
     const bool has_place = type_ == "point" || type_ == "spot";
     if (!has_place && type_ != "directional")
       light_.fail("type", "is unknown", "point, spot or directional", in_quotes(type_));
@@ -72,10 +75,7 @@ class LightTranslator {
  private:
   Vec3d color() const {
     const std::vector<double> c = light_.numbers("color", 3);
-    if (c.empty()) return Vec3d(1);
-    if (std::ranges::any_of(c, [](double v) { return !(v >= 0); }))
-      light_.fail("color", "is not a colour", "three numbers from 0");
-    return {c[0], c[1], c[2]};
+    return c.empty() ? Vec3d(1) : Vec3d(c[0], c[1], c[2]);
   }
 
   void add_cone(Json& json, const std::string& label) {
@@ -86,8 +86,8 @@ class LightTranslator {
     constexpr double kHardRim = .999, kRounding = 1e-6;
     if (inner > kHardRim * outer && inner <= (1 + kRounding) * outer) inner = kHardRim * outer;
     if (!(outer > 0 && outer <= 90 && inner >= 0 && inner < outer)) {
-      scene_.not_carried.push_back(
-          label + fmt::format(": cone angles of {:.4g} and {:.4g} degrees; uses 0 and 45", inner, outer));
+      scene_.warn(path_, label + fmt::format(": cone angles of {:.4g} and {:.4g} degrees; uses 0 and 45",
+                                             inner, outer));
       outer = 45, inner = 0;
     }
     json["outer_angle"] = outer;
@@ -101,6 +101,8 @@ class LightTranslator {
     return luminance(brightness) / (distance * distance);
   }
 
+  const std::string& path_;
+  Json json_;
   GltfRecord light_;
   std::string type_;
   double intensity_;

@@ -23,7 +23,7 @@ class CachedPicture {
   /// Presence of red, green, blue and alpha in the image.
   virtual std::array<bool, 4> channels() const = 0;
   virtual TextureMemory memory() const = 0;
-  /// Ignored parts of the file; empty: none.
+  /// Ignored parts and negative colours of the file; empty: none.
   virtual std::string warning() const = 0;
 };
 

@@ -71,7 +71,7 @@ class TextureFile {
   Texel mean() const;
 
   const std::string& path() const { return path_; }
-  /// Ignored parts of the first file with such parts; empty: none.
+  /// Ignored parts and negative colours of the first file with them; empty: none.
   const std::string& warning() const { return warning_; }
   /// True if all its images have this channel of at(): 0 red to 3 alpha. A grey image has the first three.
   bool has_channel(std::size_t channel) const { return has_channel_[channel]; }

@@ -2,6 +2,7 @@
 // Textures with OpenImageIO's texture cache, which computes smaller sizes on demand. Part of the reader
 // module (picture_reader.h).
 #include <OpenImageIO/imagecache.h>
+#include <OpenImageIO/strutil.h>
 #include <OpenImageIO/texture.h>
 
 #include <algorithm>
@@ -114,6 +115,43 @@ void for_each_texel(const PictureSource& source, const TexelColors& colors, cons
   if (outside > 0) visit(Texel{0, 0, 0, layout.places[3] < 0 ? 1. : 0.}, outside);
 }
 
+struct NegativeTexels {
+  std::size_t count = 0;
+  double lowest = 0;
+};
+
+/// Texels with a colour below 0, except small ones left by filters.
+NegativeTexels negative_texels(const PictureSource& source) {
+  constexpr float kOfFilters = 1e-4f;  // times white
+  const OpenPicture opened = open_picture(source, kTextureFormats);
+  const OIIO::ImageSpec spec = opened.input->spec();
+  const TexelLayout layout(spec, source.path);
+  const auto channels = std::size_t(layout.end - layout.begin), width = std::size_t(spec.width);
+  const int rows = rows_at_once(spec);
+  const auto x_begin = std::size_t(std::max(0, spec.full_x - spec.x)),
+             x_end = std::size_t(std::min(spec.width, spec.full_x + spec.full_width - spec.x));
+  std::vector<float> values(width * std::size_t(rows) * channels), lowest(width);
+  NegativeTexels negative;
+  for (int y = spec.y; y < spec.y + spec.height; y += rows) {
+    const int end = std::min(y + rows, spec.y + spec.height);
+    read_rows(*opened.input, layout, y, end, OIIO::TypeFloat, values.data(), source.path);
+    for (int row = std::max(y, spec.full_y); row < std::min(end, spec.full_y + spec.full_height); ++row) {
+      std::ranges::fill(lowest, 0.0f);
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (layout.places[c] < 0) continue;
+        const float* const first =
+            &values[std::size_t(row - y) * width * channels] + std::size_t(layout.places[c] - layout.begin);
+        for (std::size_t x = x_begin; x < x_end; ++x) lowest[x] = std::min(lowest[x], first[x * channels]);
+      }
+      for (const float value : lowest) {
+        negative.count += value < -kOfFilters ? 1 : 0;
+        negative.lowest = std::min(negative.lowest, double(value));
+      }
+    }
+  }
+  return negative;
+}
+
 class OiioPicture : public CachedPicture {
  public:
   OiioPicture(PictureSource source, TextureEncoding encoding)
@@ -125,12 +163,14 @@ class OiioPicture : public CachedPicture {
     const TexelLayout layout(opened.input->spec(), source_->path);
     const OIIO::ImageSpec spec = layout.spec(opened.input->spec());
     colors_ = TexelColors(opened.input->spec(), opened.format, layout, encoding, source_->path);
-    ignored_ = layout.ignored;
+    add_warnings(layout, spec, encoding.content == TextureContent::colors && opened.format != "hdr");
     channels_ = layout.channels;
     is_windowed_ = layout.is_windowed;
     for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = layout.places[c] >= 0;
     const auto values = std::size_t(spec.image_pixels()) * std::size_t(spec.nchannels);
-    memory_ = {values * spec.format.size(), values * colors_.type_for(spec.format).size() * 4 / 3};
+    const std::size_t full_size = values * colors_.type_for(spec.format).size();
+    memory_ = {values * spec.format.size(), full_size * 4 / 3};
+    if (LinearInput::is_held(opened, layout)) memory_.decoded += full_size / 3;  // the smaller sizes
     name_ = "opaline " + std::to_string(count++) + ": " + source_->path;
     LinearInput::register_source(name_, source_, colors_, failure_);
     const OIIO::ustring name(name_);
@@ -199,14 +239,26 @@ class OiioPicture : public CachedPicture {
 
   std::array<bool, 4> channels() const override { return has_channel_; }
   TextureMemory memory() const override { return memory_; }
-  std::string warning() const override {
-    if (ignored_ == 0) return {};
-    return source_->path + ": the file does not define the meaning of " +
-           (ignored_ == 1 ? "a channel besides grey, which is" : "channels besides grey, which are") +
-           " not used";
-  }
+  std::string warning() const override { return warning_; }
 
  private:
+  /// in    may_be_negative: false for data, and for a format without a sign
+  void add_warnings(const TexelLayout& layout, const OIIO::ImageSpec& spec, bool may_be_negative) {
+    const auto add = [this](const std::string& text) {
+      warning_ += (warning_.empty() ? source_->path + ": " : "; ") + text;
+    };
+    if (layout.ignored > 0)
+      add(std::string("the file does not define the meaning of ") +
+          (layout.ignored == 1 ? "a channel besides grey, which is" : "channels besides grey, which are") +
+          " not used");
+    if (!may_be_negative || !spec.format.is_floating_point()) return;
+    const auto [count, lowest] = negative_texels(*source_);
+    if (count > 0)
+      add(OIIO::Strutil::fmt::format(
+          "{} of {} texels have a negative colour, rendered as 0; the lowest is {:.3g}", count,
+          spec.image_pixels(), lowest));
+  }
+
   [[noreturn]] void fail() const {
     std::string complaint = failure_->is_set() ? failure_->text() : texture_system().geterror();
     complaint = complaint.substr(0, complaint.find('\n'));
@@ -216,7 +268,7 @@ class OiioPicture : public CachedPicture {
   std::shared_ptr<const PictureSource> source_;
   std::shared_ptr<ReadFailure> failure_ = std::make_shared<ReadFailure>();
   TexelColors colors_;
-  int ignored_ = 0;   // channels of the file
+  std::string warning_;
   int channels_ = 0;  // channels of a texel
   std::array<bool, 4> has_channel_{};
   bool is_windowed_ = false;

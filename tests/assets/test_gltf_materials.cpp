@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include "asset_test.h"
@@ -175,6 +176,60 @@ TEST(GltfMaterials, ValuesOutOfRangeAreSaid) {
   volume.erase("attenuationDistance");
   EXPECT_TRUE(scene_of(cube_of(material).glb(), "a.glb").media.empty());
   EXPECT_TRUE(has(imported(cube_of(material)).not_carried, "a multiscatter colour; treated as opaque"));
+}
+
+// Claim: a number outside of the range that glTF 2.0 or an extension gives it is clamped, with one warning that names its place,
+// the range and the value; numbers at the ends of their range are taken without a word. Source: the JSON schemas of glTF 2.0 and
+// its extensions. Fails if a row of the table is missing, or a material of two meshes is told twice.
+TEST(GltfMaterials, NumbersOutOfRangeAreClampedWithAWarning) {
+  const Json bad = {
+      {"emissiveFactor", {0, -1, 0}},
+      {"alphaCutoff", -1},
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {1.7, -.2, .5, 1}}, {"roughnessFactor", 3}, {"metallicFactor", -1}}},
+      {"extensions",
+       {{"KHR_materials_ior", {{"ior", .5}}},
+        {"KHR_materials_anisotropy", {{"anisotropyStrength", -2}}},
+        {"KHR_materials_specular", {{"specularFactor", 2}}},
+        {"KHR_materials_transmission", {{"transmissionFactor", -.5}}},
+        {"KHR_materials_volume",
+         {{"thicknessFactor", -1}, {"attenuationDistance", -1}, {"attenuationColor", {2, 1, 1}}}}}}};
+  Asset asset = cube_of(bad);
+  asset.json["meshes"][0]["primitives"].push_back(asset.json["meshes"][0]["primitives"][0]);
+  asset.json["meshes"][0]["primitives"][1]["attributes"].erase("NORMAL");
+  const ImportedAsset result = imported(asset);
+  const auto expect_one = [&](const std::string& key, const std::string& expected, const std::string& got) {
+    const std::string text =
+        ": materials[0]." + key + " is out of range (expected " + expected + ", got " + got;
+    EXPECT_EQ(std::ranges::count_if(result.warnings,
+                                    [&](const std::string& line) { return line.find(text) != line.npos; }),
+              1)
+        << text;
+  };
+  expect_one("emissiveFactor", "0 to 1", "[0,-1,0]");
+  expect_one("alphaCutoff", "at least 0", "-1");
+  expect_one("pbrMetallicRoughness.baseColorFactor", "0 to 1", "[1.7,-0.2,0.5,1]): uses [1.0,0.0,0.5,1]");
+  expect_one("pbrMetallicRoughness.roughnessFactor", "0 to 1", "3): uses 1.0");
+  expect_one("pbrMetallicRoughness.metallicFactor", "0 to 1", "-1): uses 0.0");
+  expect_one("extensions.KHR_materials_ior.ior", "at least 1, or 0", "0.5): uses 1.0");
+  expect_one("extensions.KHR_materials_anisotropy.anisotropyStrength", "0 to 1", "-2");
+  expect_one("extensions.KHR_materials_specular.specularFactor", "0 to 1", "2");
+  expect_one("extensions.KHR_materials_transmission.transmissionFactor", "0 to 1", "-0.5");
+  expect_one("extensions.KHR_materials_volume.thicknessFactor", "at least 0", "-1");
+  expect_one("extensions.KHR_materials_volume.attenuationDistance", "above 0", "-1): uses the default");
+  expect_one("extensions.KHR_materials_volume.attenuationColor", "0 to 1", "[2,1,1]");
+  const Scene scene = scene_of(asset.glb(), "a.glb");
+  EXPECT_EQ(scene.shapes.at(0).reflectance, Rgb(1, 0, .5));
+  EXPECT_EQ(scene.shapes.at(0).gloss.value().roughness, 1);
+
+  const Json good = {{"emissiveFactor", {0, 1, 0}},
+                     {"alphaCutoff", 7},
+                     {"pbrMetallicRoughness",
+                      {{"baseColorFactor", {1, 0, .5, 1}}, {"roughnessFactor", 0}, {"metallicFactor", 1}}},
+                     {"extensions",
+                      {{"KHR_materials_ior", {{"ior", 1}}},
+                       {"KHR_materials_specular", {{"specularColorFactor", {9, 1, 0}}}}}}};
+  EXPECT_TRUE(imported(cube_of(good)).warnings.empty());
 }
 
 // Claim: primitives of one mesh that share a medium are one body, those of another node another. Fails if light stops

@@ -145,8 +145,28 @@ TEST(GltfScenes, HardRimsKeepTheirCone) {
     const double degrees = .5 * 180 / std::numbers::pi;
     EXPECT_NEAR(spot.outer_angle, inner > .5 ? 45 : degrees, 1e-12);
     EXPECT_NEAR(spot.inner_angle, inner > .5 ? 0 : degrees, .03);
-    EXPECT_EQ(has(imported(asset).not_carried, "cone angles"), inner > .5);
+    EXPECT_EQ(has(imported(asset).warnings, "cone angles"), inner > .5);
   }
+}
+
+// Claim: the color, intensity and range of a light outside of the schema's ranges are clamped with a warning. Source: the JSON
+// schema of KHR_lights_punctual. Fails if one is taken as it stands, or refuses the whole asset.
+TEST(GltfScenes, LightsOutOfRangeAreClampedWithAWarning) {
+  Asset asset = cube_asset();
+  asset.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"intensity", 50}, {"color", {1.5, -1, .5}}, {"range", -1}},
+      {{"type", "point"}, {"intensity", -3}}};
+  for (const int light : {0, 1})
+    asset.root(asset.node(
+        {{"translation", {0, 5, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}}));
+  const std::vector<std::string> warnings = imported(asset).warnings;
+  for (const char* text : {"lights[0].color is out of range (expected 0 to 1, got [1.5,-1,0.5])",
+                           "lights[0].range is out of range (expected above 0, got -1)",
+                           "lights[1].intensity is out of range (expected at least 0, got -3)"})
+    EXPECT_TRUE(has(warnings, text)) << text;
+  const Scene scene = scene_of(asset.glb(), "a.glb");
+  expect_near(std::get<PointLight>(scene.lights.at(0).source).intensity / 1e6, {50, 0, 25});
+  expect_near(std::get<PointLight>(scene.lights.at(1).source).intensity, {0, 0, 0});
 }
 
 // Claim: lights as bright as real lamps make an EXR of floats, since halves end at 65504. Fails if the brightness of

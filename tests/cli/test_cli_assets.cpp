@@ -228,6 +228,17 @@ TEST(CliAssets, WhatChangesTheImageIsAWarning) {
   EXPECT_EQ(mask.exit_code, 0);
   EXPECT_TRUE(contains(mask.err, "warning: mask.glb: material 'leaf': alphaMode 'MASK': ignored"))
       << mask.err;
+  Asset asset = asset_test::cube_asset();
+  asset.material({{"pbrMetallicRoughness", {{"roughnessFactor", 3}}}});
+  asset.json["meshes"][0]["primitives"][0]["material"] = 0;
+  put_bytes(folder.file("rough.glb"), asset.glb());
+  const Outcome rough =
+      run_program({"render", "rough.glb", "-o", "a.png", "--resolution", "8x8"}, folder.path);
+  EXPECT_EQ(rough.exit_code, 0);
+  EXPECT_TRUE(contains(rough.err,
+                       "warning: rough.glb: materials[0].pbrMetallicRoughness.roughnessFactor is out of "
+                       "range (expected 0 to 1, got 3): uses 1.0"))
+      << rough.err;
 }
 
 // Claim: the plan of a figure of metres says a size at which marble lets light through. Fails if 2,000,000 samples are

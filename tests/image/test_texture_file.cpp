@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "../core/scratch_folder.h"
+#include "core/stopwatch.h"
 #include "image/texture_file.h"
 #include "opaline/error.h"
 #include "support/pictures.h"
@@ -340,6 +341,52 @@ TEST(TextureFile, FiltersCheckers) {
     const TexturePlace oblong{float(i) * .137f, float(i) * .291f, {.5f, .1f}, {-.02f, .1f}};
     EXPECT_NEAR(double(texture->at(oblong)[1]), .5, .002) << i;
   }
+}
+
+// Claim: the smaller sizes of a picture without them are bilinear samples of the next larger one, for odd sizes, too. Source: by
+// hand: a row of five texels 0, 1, 0, 0, 0 becomes the means of those around 3/4 and 13/4 from the first, which are 3/4 and 0.
+// Tolerance: halves. Fails if the last texels of odd sizes are left out, or mixed with the first.
+TEST(TextureFile, HalvesOddSizes) {
+  const ScratchFolder folder;
+  for (const bool is_wide : {false, true}) {
+    const std::string path = folder.file(is_wide ? "wide.png" : "high.png");
+    put_png(path, is_wide ? 5 : 1, is_wide ? 1 : 5, [](int x, int y) {
+      return x + y == 1 ? Bytes{255, 255, 255} : Bytes{0, 0, 0};
+    });
+    for (const ColorSpace space : {ColorSpace::linear, ColorSpace::srgb}) {
+      const auto texture = TextureFile::open(path, space);
+      const auto half = [&](float along) {
+        TexturePlace place{.5f, .5f, {.4f, 0}, {0, .4f}};
+        (is_wide ? place.u : place.v) = along;
+        return double(texture->at(place)[0]);
+      };
+      EXPECT_NEAR(half(.25f), .75, .004) << is_wide;
+      EXPECT_NEAR(half(.75f), 0, .004) << is_wide;
+    }
+  }
+}
+
+// Claim: making the smaller sizes of a large PNG costs a few times its decoding. Tolerance: 10 times the CPU time of
+// decoding, where it is about 3, and 25 or more if the cache makes the sizes texel by texel. Fails if it does.
+TEST(TextureFile, SmallerSizesCostLittle) {
+  constexpr int kSide = 4096;
+  const ScratchFolder folder;
+  const std::string path = folder.file("large.png");
+  const auto output = OIIO::ImageOutput::create(path);
+  OIIO::ImageSpec spec(kSide, kSide, 1, OIIO::TypeUInt8);
+  spec.attribute("png:compressionLevel", 1);
+  std::vector<unsigned char> texels(std::size_t(kSide) * kSide);
+  for (std::size_t i = 0; i < texels.size(); ++i) texels[i] = (i / 8 + i / kSide) % 2 == 0 ? 255 : 0;
+  ASSERT_TRUE(output->open(path, spec));
+  ASSERT_TRUE(output->write_image(OIIO::TypeUInt8, texels.data()) && output->close());
+  const auto texture = TextureFile::open(path, ColorSpace::srgb);
+  const Stopwatch decoding;
+  ASSERT_TRUE(OIIO::ImageInput::open(path)->read_image(0, 0, 0, 1, OIIO::TypeUInt8, texels.data()));
+  const double decode_seconds = decoding.cost({}).cpu_seconds;
+  const Stopwatch looking;
+  EXPECT_NEAR(double(texture->at({.5f, .5f, {1, 0}, {0, 1}})[0]), .5, .002);
+  EXPECT_LT(looking.cost({}).cpu_seconds, 10 * decode_seconds);
+  EXPECT_NEAR(double(texture->at({.5f / kSide, .5f / kSide, {}, {}})[0]), 1, 1e-3);
 }
 
 // Claim: tiles of a set stand side by side, 1001 + column + 10 row with rows upwards; where there is none the set says
