@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <optional>
 #include <type_traits>
 
@@ -67,7 +68,7 @@ T value_of(T Owner::*);
 /// Row of a value for one member. Without a documented default, shows the member's.
 template <auto kMember>
 auto member(std::string_view key, ValueType type, std::string_view unit, const Range& range,
-            std::string default_value, std::string_view meaning) {
+            std::string default_value, std::string_view meaning, std::vector<KeyedStage> stages = {}) {
   using Owner = decltype(owner_of(kMember));
   using T = decltype(value_of(kMember));
   const auto read = [](Owner& owner, const Value& value, double mm_per_unit) {
@@ -80,7 +81,7 @@ auto member(std::string_view key, ValueType type, std::string_view unit, const R
     info.default_value = json(Owner{});
     if (type == ValueType::choice) info.default_value = '`' + info.default_value + '`';
   }
-  return Member<Owner>{std::move(info), read, json};
+  return Member<Owner>{std::move(info), read, json, std::move(stages)};
 }
 
 Member<Settings> read_by(void (*read)(Settings&, const Value&, double), Member<Settings> member) {
@@ -145,22 +146,36 @@ std::string pixel_type_json(const Film& film) {
   return fmt::format("\"{}\"", kPixelTypes[film.half ? 0 : 1]);
 }
 
+template <class Owner>
+void add_values(std::string& text, KeyedStage stage, std::span<const Member<Owner>> members,
+                const Owner& owner) {
+  for (const Member<Owner>& member : members)
+    if (std::ranges::count(member.stages, stage) > 0)
+      text += fmt::format("{}={} ", member.info.key, member.json(owner));
+}
+
 }  // namespace
 
 std::span<const Member<Film>> film_members() {
   using enum ValueType;
+  using enum KeyedStage;
   static const std::vector<Member<Film>> table{
       {row("film", "resolution", list, "pixels, each 1 to 65536, at most 2^28 in total", {1, kLargestSide},
            "[512, 512]", "image size, [width, height]"),
-       read_resolution, resolution_json},
+       read_resolution,
+       resolution_json,
+       {view}},
       {row("film", "crop", list, "pixels", {0, kLargestSide}, "everything",
            "renders only the pixels [x0, y0, x1, y1], counted from the top left, without x1 and y1"),
-       read_crop, crop_json},  // after the resolution, as it must lie within
+       read_crop,
+       crop_json,
+       {view}},  // after the resolution, as it must lie within
       member<&Film::samples_per_pixel>("samples_per_pixel", whole_number, "", {1, 65536}, "",
-                                       "camera rays per pixel"),
+                                       "camera rays per pixel", {view, view_near}),
       member<&Film::filter>("filter", choice, "", kFiniteNumber, "",
                             "pixel filter: `\"box\"`: one pixel wide; `\"gaussian\"`: softer, standard "
-                            "deviation 0.5, radius 1.5 pixels"),
+                            "deviation 0.5, radius 1.5 pixels",
+                            {view}),
       {row("film", "pixel_type", choice, "", kFiniteNumber, "`\"half\"`",
            "bits per value of the EXR: `\"half\"`: 16; `\"float\"`: 32", kPixelTypes),
        read_pixel_type, pixel_type_json},
@@ -180,6 +195,7 @@ std::span<const Member<Film>> film_members() {
 
 std::span<const Member<Settings>> settings_members() {
   using enum ValueType;
+  using enum KeyedStage;
   static const std::vector<Member<Settings>> table{
       member<&Settings::method>(
           "method", choice, "", kFiniteNumber, "",
@@ -187,19 +203,22 @@ std::span<const Member<Settings>> settings_members() {
           "diffuse reflection, usually fastest; `\"direct\"`: the same BSSRDF by unbiased Monte Carlo "
           "sampling, slow and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the "
           "reference; `\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the "
-          "reference"),
+          "reference",
+          {surfaces, view_surfaces}),
       member<&Settings::evaluator>(
           "evaluator", choice, "", kFiniteNumber, "",
           "hierarchical evaluation: `\"dual_tree\"`: clusters of shading points against octree nodes, to "
           "`tolerance`; `\"surface_cache\"`: the same at points all over the surface, interpolated at "
           "shading points; `\"automatic\"`: one of the two, depending on the number of points; "
           "`\"classic\"`: octree traversal per shading point, as published; `\"brute_force\"`: the exact "
-          "sum, slow"),
+          "sum, slow",
+          {exitance, surfaces}),
       read_by(read_tolerance,
               member<&Settings::tolerance>(
                   "tolerance", number, "", {kLeastTolerance, 1}, "",
                   "evaluators `dual_tree` and `surface_cache`: maximum relative error against the exact sum, "
-                  "at 99 % of the points; single precision sets the lower limit")),
+                  "at 99 % of the points; single precision sets the lower limit",
+                  {exitance, surfaces})),
       member<&Settings::sample_spacing>("sample_spacing", length, "", kFiniteNumber,
                                         "from the medium's mean free path",
                                         "distance between samples, sqrt(area / samples)"),
@@ -211,7 +230,8 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::light_samples>("light_samples", whole_number, "", {1, 65536}, "",
                                        "shadow rays per sample, and per pixel of an opaque surface, to each "
                                        "area light and to the surroundings; with more than 16 lights: to all "
-                                       "area lights together, and a third as many to all other lights"),
+                                       "area lights together, and a third as many to all other lights",
+                                       {transfers, exitance, view_surfaces}),
       member<&Settings::entry_samples>(
           "entry_samples", whole_number, "", {1, kMostSamples},
           fmt::format("{}, or enough for `until_error`", kDefaultEntrySamples),
@@ -222,17 +242,20 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::cell_size>(
           "cell_size", number, "mean free paths", {.05, 100}, "",
           "`volume_diffusion`: size of the cells at the surface, in mean free paths or, if shorter, in units "
-          "of 0.45 diffuse mean free paths; smaller cells are slower and more accurate"),
+          "of 0.45 diffuse mean free paths; smaller cells are slower and more accurate",
+          {cells}),
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "",
           "`volume`: re-entry of outgoing and reflected light into the same body, as in concavities; "
-          "`false`: such light is lost. Other methods: `bounces`"),
+          "`false`: such light is lost. Other methods: `bounces`",
+          {walks}),
       member<&Settings::bounces>(
           "bounces", whole_number, "", {0, 1}, "1 if one surface can light another",
           "all methods but `volume`: 1: one bounce of light between surfaces, such as from a floor to the "
           "object on it, or within one body; 0: direct light only"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
-                              "random seed; the same seed gives the same image"),
+                              "random seed; the same seed gives the same image",
+                              {samples, transfers, exitance, walks, surfaces, gathered, view_surfaces}),
       member<&Settings::reference_frame>(
           "reference_frame", whole_number, "", {0, 1e9}, "",
           "frame ranges: samples are placed on the surfaces of this frame and move with them in all others"),
@@ -245,26 +268,39 @@ std::span<const Member<Settings>> settings_members() {
 
 std::span<const Member<Laboratory>> laboratory_members() {
   using enum ValueType;
+  using enum KeyedStage;
   static const std::vector<Member<Laboratory>> table{
       member<&Laboratory::instruction_set>("instruction_set", choice, "", kFiniteNumber, "",
                                            "SIMD instructions of the dual tree: `\"automatic\"` (the widest "
-                                           "of the processor), `\"baseline\"`, `\"avx2\"` or `\"avx512\"`"),
+                                           "of the processor), `\"baseline\"`, `\"avx2\"` or `\"avx512\"`",
+                                           {exitance}),
       member<&Laboratory::max_solid_angle>("max_solid_angle", number, "sr", {0, 1e30, true}, "",
                                            "evaluator `classic`: maximum solid angle of an octree node that "
-                                           "is evaluated as a whole; smaller is slower and more accurate"),
+                                           "is evaluated as a whole; smaller is slower and more accurate",
+                                           {surfaces}),
       member<&Laboratory::near_field>(
           "near_field", flag, "", kFiniteNumber, "",
-          "integrates the kernel near the shading point separately; `false` requires many more samples"),
+          "integrates the kernel near the shading point separately; `false` requires many more samples",
+          {kernel}),
       member<&Laboratory::near_irradiance>(
           "near_irradiance", choice, "", kFiniteNumber, "",
           "irradiance of the near field: `\"samples\"`: mean of the samples around the point; `\"point\"`: "
           "traced at the point; `\"mixed\"`: a blend that preserves the width of the kernel, traced at "
-          "surrounding points where the two differ"),
+          "surrounding points where the two differ",
+          {kernel}),
       member<&Laboratory::entry_strategy>("entry_strategy", choice, "", kFiniteNumber, "",
                                           "method `direct`, sampling of entry points: `\"disc_axes\"`: lines "
                                           "through discs along three axes; `\"chords\"`: chords of spheres"),
   };
   return table;
+}
+
+std::string settings_in_key(KeyedStage stage, const Scene& scene) {
+  std::string text;
+  add_values(text, stage, film_members(), scene.film);
+  add_values(text, stage, settings_members(), scene.settings);
+  add_values(text, stage, laboratory_members(), scene.settings.laboratory);
+  return text;
 }
 
 }  // namespace opaline
