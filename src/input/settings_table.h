@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keys of `film` and `settings`, each with its member and the stages depending on it: a new setting is a
-// member of scene.h and a row here.
+// Keys of `film` and `settings`, with their stages: a new setting is a member of scene.h and a row here.
 #pragma once
 
 #include <span>
@@ -12,19 +11,19 @@
 
 namespace opaline {
 
-/// Stages with values of `film` and `settings` in their cache keys, beside the plan's.
+/// Stages with values of `film` and `settings` in their cache keys, beside the plan's (stages/stage_keys.h).
 enum class KeyedStage {
-  samples,        ///< placed on a surface
-  transfers,      ///< light of an area light at samples
-  kernel,         ///< radial profile, split into near and far field
-  exitance,       ///< surface cache
-  walks,          ///< random walks
-  cells,          ///< of the diffusion equation
-  surfaces,       ///< light from surfaces, for bounces
-  gathered,       ///< light gathered at samples
-  view,           ///< camera hits
-  view_surfaces,  ///< surface types there, and samples of lights
-  view_near       ///< irradiance at surface points
+  samples,
+  transfers,  ///< from area lights
+  kernel,
+  exitance,  ///< surface caches
+  walks,
+  cells,
+  surfaces,  ///< as light bounces from them
+  gathered,  ///< bounced light at samples
+  view,
+  view_surfaces,
+  view_near
 };
 
 /// Row of the schema, for a member of Owner.
@@ -40,7 +39,19 @@ std::span<const Member<Film>> film_members();
 std::span<const Member<Settings>> settings_members();
 std::span<const Member<Laboratory>> laboratory_members();
 
-/// Film and settings in the key of a stage, as text.
+/// Values of a section; defaults where missing.
+template <class Owner>
+Owner read_members(const Value& value, std::string_view section, std::span<const Member<Owner>> members,
+                   double mm_per_unit) {
+  const ObjectReader reader(value, section);
+  Owner owner;
+  for (const Member<Owner>& member : members)
+    if (const std::optional<Value> given = reader.find(member.info.key))
+      member.read(owner, *given, mm_per_unit);
+  return owner;
+}
+
+/// Values of film and settings in the key of a stage.
 std::string settings_in_key(KeyedStage stage, const Scene& scene);
 
 }  // namespace opaline

@@ -94,19 +94,17 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
   KeyBuilder key("surfaces in their light", 4);
   key.add(settings_in_key(KeyedStage::surfaces, input.scene));
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  const auto add_value = [&key](const auto& value, const auto&, SurfacePart) { key.add(value); };
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];
+    for_each_textured(shape, add_value);
+    key.add(shape.medium.has_value()).add(shape.gloss.has_value());
     if (shape.medium) {
       const Medium& medium = input.scene.media[*shape.medium];
-      key.add(medium.tint).add(medium.texture_mix).add(medium.eta).add(medium.specular_roughness);
-      key.add(medium.grain.anisotropy).add(medium.grain.rotation);
-      if (is_partly_opaque(medium)) key.add(medium.subsurface_weight).add(medium.base_color);
-    } else {
-      key.add(shape.reflectance).add(shape.gloss.has_value());
-      if (const auto& gloss = shape.gloss) {
-        key.add(gloss->metalness).add(gloss->roughness).add(gloss->eta);
-        key.add(gloss->grain.anisotropy).add(gloss->grain.rotation);
-      }
+      for_each_textured(medium, add_value);
+      key.add(medium.texture_mix).add(medium.eta).add(medium.grain.anisotropy).add(medium.grain.rotation);
+    } else if (const auto& gloss = shape.gloss) {
+      key.add(gloss->eta).add(gloss->grain.anisotropy).add(gloss->grain.rotation);
     }
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
     if (uvs_of(input.scene, shape) != MeshUvs::unread) add_coordinates(key, input.world.meshes[i]);
@@ -158,13 +156,16 @@ StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> m
 
 StageKey view_coats_key(const Scene& scene) {
   KeyBuilder key("coats of the view", 1);
+  const auto add_boundary = [&key](const auto& value, const auto&, SurfacePart part) {
+    if (part == SurfacePart::boundary) key.add(value);
+  };
   for (const Shape& shape : scene.shapes) {
-    if (shape.medium) {
-      const Medium& medium = scene.media[*shape.medium];
-      key.add(medium.specular_roughness).add(medium.grain.anisotropy).add(medium.grain.rotation);
-    }
-    if (shape.gloss)
-      key.add(shape.gloss->roughness).add(shape.gloss->grain.anisotropy).add(shape.gloss->grain.rotation);
+    for_each_textured(shape, add_boundary);
+    if (shape.gloss) key.add(shape.gloss->grain.anisotropy).add(shape.gloss->grain.rotation);
+    if (!shape.medium) continue;
+    const Medium& medium = scene.media[*shape.medium];
+    for_each_textured(medium, add_boundary);
+    key.add(medium.grain.anisotropy).add(medium.grain.rotation);
   }
   return key.key();
 }
