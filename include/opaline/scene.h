@@ -128,6 +128,19 @@ struct Medium {
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
+/// Part of a surface with a value that may be a texture.
+enum class SurfacePart { color, boundary, normals };
+
+/// Calls visit(value, texture, part) for each value of a medium that may be a texture; 1 for a texture alone.
+template <class Visit>
+void for_each_textured(const Medium& medium, const Visit& visit) {
+  visit(medium.tint, medium.tint_texture, SurfacePart::color);
+  visit(medium.specular_roughness, medium.roughness_texture, SurfacePart::boundary);
+  visit(1.0, medium.radius_texture, SurfacePart::color);
+  visit(medium.subsurface_weight, medium.weight_texture, SurfacePart::color);
+  visit(medium.base_color, medium.base_texture, SurfacePart::color);
+}
+
 // ---- shapes ---------------------------------------------------------------------------------------------
 
 struct MeshFile {
@@ -212,6 +225,17 @@ struct Shape {
   std::optional<Gloss> gloss{};                  ///< specular reflection of an opaque shape; none: diffuse
   friend bool operator==(const Shape&, const Shape&) = default;
 };
+
+/// The same for a shape, without its medium.
+template <class Visit>
+void for_each_textured(const Shape& shape, const Visit& visit) {
+  visit(shape.reflectance, shape.reflectance_texture, SurfacePart::color);
+  visit(1.0, shape.normal_map, SurfacePart::normals);
+  visit(1.0, shape.bump_map, SurfacePart::normals);
+  if (!shape.gloss) return;
+  visit(shape.gloss->metalness, shape.gloss->metalness_texture, SurfacePart::color);
+  visit(shape.gloss->roughness, shape.gloss->roughness_texture, SurfacePart::boundary);
+}
 
 // ---- lights ---------------------------------------------------------------------------------------------
 

@@ -62,10 +62,10 @@ void replace_materials(AssetScene& scene, const std::string& material, const Ass
   scene.media = Json::object();
   if (!surface.medium.is_null()) scene.media[name] = surface.medium;
   for (Json& shape : scene.shapes) {
-    for (const char* key :
-         {"medium", "reflectance", "group", "metalness", "specular_roughness", "specular_ior",
-          "specular_weight", "specular_anisotropy", "specular_rotation", "normal_map", "bump_map"})
-      shape.erase(key);
+    Json bare = Json::object();
+    for (const char* key : {"name", "file", "part", "transform", "normals", "vertex_colors"})
+      if (shape.contains(key)) bare[key] = shape[key];
+    shape = std::move(bare);
     if (scene.has_vertex_colors) shape["vertex_colors"] = false;
     if (surface.medium.is_null())
       shape["reflectance"] = triple_json(surface.reflectance);

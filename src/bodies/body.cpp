@@ -10,22 +10,14 @@
 #include "volume/cut_outer_surface.h"
 
 namespace opaline {
-std::uint64_t sampling_seed(const Settings& settings, std::size_t group) {
-  return hash_bits(settings.seed, group);
-}
-
 SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group, SurfaceCells* cells) {
   const BodyPlan& plan = input.plan.groups[group];
   return sample_surface({.world = input.world,
                          .meshes = plan.meshes,
                          .count = plan.samples,
-                         .seed = sampling_seed(input.scene.settings, group),
+                         .seed = hash_bits(input.scene.settings.seed, group),
                          .monitor = input.monitor},
                         cells);
-}
-
-std::uint64_t irradiance_seed(const Settings& settings, std::size_t group) {
-  return hash_bits(settings.seed, group + 1000);
 }
 
 std::uint64_t point_irradiance_seed(const Settings& settings) {
@@ -39,7 +31,7 @@ std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::si
   const BodyPlan& plan = input.plan.groups[group];
   const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
   return compute_irradiance({input.rays, samples, lights, profile.eta, settings.light_samples,
-                             irradiance_seed(settings, group), input.monitor, plan.cell > 0});
+                             hash_bits(settings.seed, group + 1000), input.monitor, plan.cell > 0});
 }
 
 std::vector<Light> recentred_lights(const Scene& scene, const World& world) {

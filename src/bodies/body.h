@@ -45,11 +45,9 @@ struct PrecomputeInput {
 
 // Stages shared by methods; `group` is an index into the plan's bodies, and selects random numbers.
 
-std::uint64_t sampling_seed(const Settings& settings, std::size_t group);
 /// cells: unless null, of the samples.
 SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group, SurfaceCells* cells = nullptr);
 
-std::uint64_t irradiance_seed(const Settings& settings, std::size_t group);
 /// Seed of irradiance_at at shading points and at the points of a surface cache.
 std::uint64_t point_irradiance_seed(const Settings& settings);
 /// in    lights: recentred, any of the scene's

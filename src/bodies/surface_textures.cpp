@@ -35,10 +35,6 @@ std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Pl
   return texture.file->at(texture_place(texture, *place.uv, place.footprint));
 }
 
-float number_of(const Texture& texture, const SurfaceTextures::Place& place) {
-  return std::clamp(looked_up(texture, place)[texture.channel] * float(texture.scale.x), 0.0f, 1.0f);
-}
-
 RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
   const std::array<float, 4> texel = looked_up(texture, place);
   RgbF color;
@@ -137,10 +133,6 @@ TangentFrame level_frame(const Vec3f& normal) {
   return {tangent, cross(normal, tangent)};
 }
 
-const Texture* pointer_to(const std::optional<Texture>& texture) {
-  return texture ? &*texture : nullptr;
-}
-
 }  // namespace
 
 SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world_(world) {
@@ -155,7 +147,6 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
       const bool is_inside = is_followed && has_color_inside(medium);
       (is_inside ? own.color_inside : own.tint) = pointer_to(medium.tint_texture);
       if (is_followed && varies_inside(medium)) own.radius_inside = pointer_to(medium.radius_texture);
-      own.roughness = pointer_to(medium.roughness_texture);
       own.factor = medium.tint;
       if (is_partly_opaque(medium)) {
         own.partly_opaque = &medium;
@@ -168,8 +159,6 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
       own.at_exit = 1 - own.at_entry;
     } else {
       own.tint = pointer_to(shape.reflectance_texture);
-      if (shape.gloss) own.roughness = pointer_to(shape.gloss->roughness_texture);
-      if (shape.gloss) own.metalness = pointer_to(shape.gloss->metalness_texture);
     }
     own.has_colors = uses_vertex_colors(scene, shape, world.meshes[m]);
     if (own.has_colors && !shape.medium && !shape.has_reflectance)
@@ -203,11 +192,9 @@ SurfaceTint SurfaceTextures::tint(const Place& place) const {
   const float weight = own.partly_opaque == nullptr ? 1 : float(own.partly_opaque->subsurface_weight);
   if (!own.has_tint) return {.leaving = RgbF(weight)};
   RgbF tint(own.factor);
-  if (own.tint != nullptr) {
-    tint = tint * color_of(*own.tint, place);
-  }
+  if (own.tint != nullptr) tint = tint * color_of(*own.tint, place);
   if (own.has_colors) tint = tint * place.color;
-  if (own.weight != nullptr) tint *= number_of(*own.weight, place);
+  tint *= number_at(own.weight, place).value_or(1);
   SurfaceTint result{powered(tint, own.at_entry), powered(tint, own.at_exit)};
   if (weight < 1) result.leaving *= weight;
   return result;
@@ -216,8 +203,7 @@ SurfaceTint SurfaceTextures::tint(const Place& place) const {
 RgbF SurfaceTextures::reflected(const Place& place) const {
   const OfMesh& own = of_mesh_[place.mesh];
   if (own.partly_opaque == nullptr) return {};
-  const float scattered =
-      own.weight != nullptr ? number_of(*own.weight, place) : float(own.partly_opaque->subsurface_weight);
+  const float scattered = number_at(own.weight, place).value_or(float(own.partly_opaque->subsurface_weight));
   RgbF base(own.partly_opaque->base_color);
   if (own.base != nullptr) base = base * color_of(*own.base, place);
   if (own.has_colors) base = base * place.color;
@@ -232,16 +218,9 @@ MediumFactors SurfaceTextures::medium(const Place& place) const {
   return factors;
 }
 
-std::optional<float> SurfaceTextures::roughness(const Place& place) const {
-  const Texture* const texture = of_mesh_[place.mesh].roughness;
+std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Place& place) {
   if (texture == nullptr) return {};
-  return number_of(*texture, place);
-}
-
-std::optional<float> SurfaceTextures::metalness(const Place& place) const {
-  const Texture* const texture = of_mesh_[place.mesh].metalness;
-  if (texture == nullptr) return {};
-  return number_of(*texture, place);
+  return std::clamp(looked_up(*texture, place)[texture->channel] * float(texture->scale.x), 0.0f, 1.0f);
 }
 
 Vec3f SurfaceTextures::tangent(const Place& place, const SurfacePoint& point) const {

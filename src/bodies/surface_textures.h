@@ -59,9 +59,6 @@ class SurfaceTextures {
   /// Fraction of the light diffusely reflected at the surface of a body, instead of entering.
   RgbF reflected(const Place& place) const;
   MediumFactors medium(const Place& place) const;
-  /// None: the surface's own.
-  std::optional<float> roughness(const Place& place) const;
-  std::optional<float> metalness(const Place& place) const;
   /// Unit tangent perpendicular to the shading normal, the direction of largest roughness of an anisotropic
   /// boundary; 0 for isotropic ones.
   Vec3f tangent(const Place& place, const SurfacePoint& point) const;
@@ -70,9 +67,8 @@ class SurfaceTextures {
 
  private:
   struct OfMesh {
-    const Texture *tint = nullptr, *roughness = nullptr, *metalness = nullptr, *normals = nullptr,
-                  *heights = nullptr, *weight = nullptr, *base = nullptr, *color_inside = nullptr,
-                  *radius_inside = nullptr;
+    const Texture *tint = nullptr, *normals = nullptr, *heights = nullptr, *weight = nullptr, *base = nullptr,
+                  *color_inside = nullptr, *radius_inside = nullptr;
     Rgb factor{1, 1, 1};               ///< times the tint's texture
     double at_entry = 0, at_exit = 1;  ///< exponents of the tint
     bool has_tint = false, has_uv = false, has_tangents = false, has_colors = false;
@@ -84,6 +80,12 @@ class SurfaceTextures {
   std::vector<OfMesh> of_mesh_;
   bool is_empty_ = true;
 };
+
+/// Number of a texture; none: no texture.
+std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Place& place);
+inline const Texture* pointer_to(const std::optional<Texture>& texture) {
+  return texture ? &*texture : nullptr;
+}
 
 /// True if textures of a medium vary it inside the body (SubsurfaceMethod::follows_textures_inside).
 bool follows_textures_inside(Method method);  // methods.cpp

@@ -9,9 +9,9 @@
 namespace opaline {
 namespace {
 
-// Raised on changes of the header, or of the members of a struct in an entry. Stages have versions of their
-// own, in their keys.
-constexpr int kFormat = 3;
+// Raised on changes of the header, of the members of a struct in an entry, or of the form of keys. Stages have
+// versions of their own, in their keys.
+constexpr int kFormat = 4;
 constexpr std::string_view kMagic = "opaline cache entry, format ";
 constexpr std::string_view kPayload = "payload ";
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "input/schema.h"
+#include "values/value.h"
 
 namespace opaline {
 
@@ -30,7 +31,13 @@ inline constexpr const char
     *kRotationMeaning =
         "rotates u for `specular_anisotropy`, counter-clockwise; without UVs, u is horizontal, around y";
 
-/// The section "medium".
-std::vector<KeyInfo> medium_rows();
+/// Row of the section "medium".
+struct MediumRow {
+  KeyInfo info;
+  void (*read)(Medium& medium, const Value& value);  ///< null: by read_medium
+
+  MediumRow(KeyInfo key, decltype(read) reader = nullptr) : info(std::move(key)), read(reader) {}
+};
+std::span<const MediumRow> medium_rows();
 
 }  // namespace opaline

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "input/key_rows.h"
 #include "input/presets.h"
+#include "input/readers.h"
 
 namespace opaline {
 namespace {
@@ -15,11 +16,18 @@ std::string_view profile_meaning() {
   return text;
 }
 
+/// Row of a value that may be a texture, with its two members.
+template <auto kValue, auto kTexture>
+MediumRow textured(KeyInfo info) {
+  return {textured(std::move(info)),
+          [](Medium& medium, const Value& value) { read_textured(value, medium.*kValue, medium.*kTexture); }};
+}
+
 }  // namespace
 
-std::vector<KeyInfo> medium_rows() {
+std::span<const MediumRow> medium_rows() {
   using enum ValueType;
-  return {
+  static const std::vector<MediumRow> table{
       row("medium", "preset", choice, "", kFiniteNumber, "",
           "a measured material: apple, chicken1, chicken2, cream, ketchup, marble, potato, skimmilk, skin1, "
           "skin2, spectralon, wholemilk (Jensen et al. 2001)",
@@ -48,22 +56,26 @@ std::vector<KeyInfo> medium_rows() {
           "diffusion depends on `sigma_s_prime` only"),
       row("medium", "specular_ior", number, "", {.1, 10},
           "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
-      textured(row("medium", "specular_roughness", number, "", kUnitInterval, "0",
-                   "roughness of the specular reflection: 0 smooth, 0.3 satin; only a rough surface shows "
-                   "highlights of point, spot and directional lights")),
+      textured<&Medium::specular_roughness, &Medium::roughness_texture>(
+          row("medium", "specular_roughness", number, "", kUnitInterval, "0",
+              "roughness of the specular reflection: 0 smooth, 0.3 satin; only a rough surface shows "
+              "highlights of point, spot and directional lights")),
       row("medium", "specular_weight", number, "", {0, 1}, "1",
           "factor of the specular reflectance at normal incidence, through a modified index of refraction, "
           "also for light from inside; at 0 all light enters"),
       row("medium", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning),
       row("medium", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning),
-      textured(row("medium", "subsurface_weight", number, "", kUnitInterval, "1",
-                   "fraction of the light that scatters below the surface; `base_color` reflects the rest; "
-                   "`texture_mix` applies to a texture")),
-      textured(row("medium", "base_color", color, "", kUnitInterval, "0.8",
-                   "diffuse reflectance for the rest of the light, with `subsurface_weight`")),
-      textured(row("medium", "tint", color, "", kUnitInterval, "1",
-                   "colours the light at the surface of any medium, by `texture_mix`; a constant tint "
-                   "multiplies the exitance")),
+      textured<&Medium::subsurface_weight, &Medium::weight_texture>(
+          row("medium", "subsurface_weight", number, "", kUnitInterval, "1",
+              "fraction of the light that scatters below the surface; `base_color` reflects the rest; "
+              "`texture_mix` applies to a texture")),
+      textured<&Medium::base_color, &Medium::base_texture>(
+          row("medium", "base_color", color, "", kUnitInterval, "0.8",
+              "diffuse reflectance for the rest of the light, with `subsurface_weight`")),
+      textured<&Medium::tint, &Medium::tint_texture>(
+          row("medium", "tint", color, "", kUnitInterval, "1",
+              "colours the light at the surface of any medium, by `texture_mix`; a constant tint "
+              "multiplies the exitance")),
       row("medium", "texture_mix", choice, "", kFiniteNumber, "`\"split\"`",
           "application of the tint: `\"pre\"`: to transmitted irradiance, blurred by scattering; `\"post\"`: "
           "to exitance, sharp; `\"split\"`: its square root to both; `\"medium\"`: a texture of "
@@ -83,6 +95,7 @@ std::vector<KeyInfo> medium_rows() {
           "path)",
           kFitNames),
   };
+  return table;
 }
 
 }  // namespace opaline

@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "image/texture_file.h"
+#include "input/key_rows.h"
 #include "input/presets.h"
 #include "input/readers.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 namespace {
@@ -78,18 +80,15 @@ Rgb take_mean(Texture& texture) {
 
 /// Uses the mean colour of a texture for the medium, and the relative texels as a tint.
 void take_color(const Value& value, ArtistMedium& coefficients, Medium& medium) {
-  ColorReading color = read_color(value);
-  coefficients.subsurface_color = color.color;
-  if (!color.texture) return;
-  const Rgb mean = take_mean(*color.texture);
+  read_textured(value, coefficients.subsurface_color, medium.tint_texture);
+  if (!medium.tint_texture) return;
+  const Rgb mean = take_mean(*medium.tint_texture);
   for (std::size_t c = 0; c < 3; ++c) coefficients.subsurface_color[c] = std::min(mean[c], 1.0);
-  medium.tint_texture = std::move(color.texture);
 }
 
 void take_radius(const Value& value, ArtistMedium& coefficients, Medium& medium) {
-  TripleReading radius = read_triple(value);
-  coefficients.subsurface_radius = radius.texture ? take_mean(*radius.texture) : radius.triple;
-  medium.radius_texture = std::move(radius.texture);
+  read_textured(value, coefficients.subsurface_radius, medium.radius_texture);
+  if (medium.radius_texture) coefficients.subsurface_radius = take_mean(*medium.radius_texture);
 }
 
 ArtistMedium read_artist(const ObjectReader& medium, Medium& owner) {
@@ -102,34 +101,19 @@ ArtistMedium read_artist(const ObjectReader& medium, Medium& owner) {
   return result;
 }
 
-void read_tint(const ObjectReader& reader, Medium& medium) {
-  if (const auto mix = reader.find("texture_mix"))
-    medium.texture_mix = static_cast<TextureMix>(mix->choice());
-  const auto value = reader.find("tint");
-  if (!value) return;
-  if (medium.texture_mix == TextureMix::medium)
-    reader.need("texture_mix").fail("applies to 'subsurface_color' only", "another value with 'tint'");
-  if (medium.tint_texture)
-    value->fail_key("cannot be combined with a texture of 'subsurface_color'", "one of the two");
-  ColorReading tint = read_color(*value);
-  medium.tint = tint.color;
-  medium.tint_texture = std::move(tint.texture);
-}
-
-void read_weight(const ObjectReader& reader, Medium& medium) {
-  const auto weight = reader.find("subsurface_weight"), base = reader.find("base_color");
-  if (base && !weight)
+void read_textured_values(const ObjectReader& reader, Medium& medium) {
+  const auto mix = reader.find("texture_mix"), tint = reader.find("tint"), base = reader.find("base_color");
+  if (mix) medium.texture_mix = static_cast<TextureMix>(mix->choice());
+  if (tint && medium.texture_mix == TextureMix::medium)
+    mix->fail("applies to 'subsurface_color' only", "another value with 'tint'");
+  if (tint && medium.tint_texture)
+    tint->fail_key("cannot be combined with a texture of 'subsurface_color'", "one of the two");
+  if (base && !reader.find("subsurface_weight"))
     base->fail_key("has no effect without a 'subsurface_weight' below 1", "'subsurface_weight' with it");
-  if (weight) {
-    NumberReading reading = read_number(*weight);
-    medium.subsurface_weight = reading.number;
-    medium.weight_texture = std::move(reading.texture);
-  }
-  if (base) {
-    ColorReading reading = read_color(*base);
-    medium.base_color = reading.color;
-    medium.base_texture = std::move(reading.texture);
-  }
+  for (const MediumRow& row : medium_rows())
+    if (row.read != nullptr)
+      if (const auto value = reader.find(row.info.key)) row.read(medium, *value);
+  if (!is_partly_opaque(medium)) medium.base_texture.reset();  // unused, as its colour
 }
 
 }  // namespace
@@ -169,14 +153,8 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   if (const auto ior = reader.find("specular_ior")) medium.eta = ior->number();
   if (const auto weight = reader.find("specular_weight"))
     medium.eta = weighted_ior(medium.eta, weight->number());
-  if (const auto rough = reader.find("specular_roughness")) {
-    NumberReading roughness = read_number(*rough);
-    medium.specular_roughness = roughness.number;
-    medium.roughness_texture = std::move(roughness.texture);
-  }
   medium.grain = read_grain(reader);
-  read_tint(reader, medium);
-  read_weight(reader, medium);
+  read_textured_values(reader, medium);
   const auto profile = reader.find("profile");
   const std::size_t choice = profile ? profile->choice() : 0;
   medium.profile.reset();

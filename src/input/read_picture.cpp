@@ -7,17 +7,6 @@ namespace {
 
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
 
-template <class Owner>
-Owner read_members(const Value& value, std::string_view section, std::span<const Member<Owner>> members,
-                   double mm_per_unit) {
-  const ObjectReader reader(value, section);
-  Owner owner;
-  for (const Member<Owner>& member : members)
-    if (const std::optional<Value> given = reader.find(member.info.key))
-      member.read(owner, *given, mm_per_unit);
-  return owner;
-}
-
 /// Cropped images have no size limit.
 void check_pixels(const Film& film, const Value& value) {
   const std::array<int, 4> part =

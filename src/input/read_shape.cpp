@@ -117,16 +117,8 @@ void read_gloss(const ObjectReader& reader, Shape& shape) {
       key->fail_key("has no effect on a diffuse shape", "'specular_roughness' with it");
   if (!metalness && !roughness) return;
   Gloss& gloss = shape.gloss.emplace();
-  if (metalness) {
-    NumberReading reading = read_number(*metalness);
-    gloss.metalness = reading.number;
-    gloss.metalness_texture = std::move(reading.texture);
-  }
-  if (roughness) {
-    NumberReading reading = read_number(*roughness);
-    gloss.roughness = reading.number;
-    gloss.roughness_texture = std::move(reading.texture);
-  }
+  if (metalness) read_textured(*metalness, gloss.metalness, gloss.metalness_texture);
+  if (roughness) read_textured(*roughness, gloss.roughness, gloss.roughness_texture);
   gloss.grain = read_grain(reader);
   if (ior) gloss.eta = ior->number();
   constexpr double kTrace = 1e-4;  // minimum weight of the dielectric, so metals keep a boundary
@@ -140,10 +132,8 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
     reflectance->fail_key("cannot be combined with 'medium'", "either a translucent or an opaque shape");
   if (medium) shape.medium = find_medium(*medium, *context.media);
   if (reflectance) {
-    ColorReading color = read_color(*reflectance);
-    shape.reflectance = color.color;
+    read_textured(*reflectance, shape.reflectance, shape.reflectance_texture);
     shape.has_reflectance = true;
-    shape.reflectance_texture = std::move(color.texture);
   }
   if (const auto map = reader.find("normal_map")) shape.normal_map = read_normal_map(*map);
   if (const auto map = reader.find("bump_map")) shape.bump_map = read_bump_map(*map, context.mm_per_unit);

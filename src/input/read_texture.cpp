@@ -80,37 +80,27 @@ double checked(const Value& value, double number) {
   return number;
 }
 
-/// Constant value of an RGB texture with equal texels; else empty.
-std::optional<Vec3d> constant_of(const Value& value, const Texture& texture) {
-  const std::optional<Texel>& constant = texture.file->constant();
-  if (!constant) return {};
-  Vec3d triple;
-  for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, (*constant)[c] * texture.scale[c]);
-  return triple;
-}
-
 }  // namespace
 
-ColorReading read_color(const Value& value) {
-  if (!is_texture(value)) return {value.color(), {}};
-  Texture texture = read_texture(value, TexturePart::color);
-  if (const std::optional<Vec3d> constant = constant_of(value, texture)) return {Rgb(*constant), {}};
-  return {Rgb(1), std::move(texture)};
+void read_textured(const Value& value, double& number, std::optional<Texture>& texture) {
+  number = is_texture(value) ? 1 : value.number();
+  if (!is_texture(value)) return;
+  texture = read_texture(value, TexturePart::number);
+  const std::optional<Texel>& constant = texture->file->constant();
+  if (!constant) return;
+  number = checked(value, (*constant)[texture->channel] * texture->scale.x);
+  texture.reset();
 }
 
-NumberReading read_number(const Value& value) {
-  if (!is_texture(value)) return {value.number(), {}};
-  Texture texture = read_texture(value, TexturePart::number);
-  const std::optional<Texel>& constant = texture.file->constant();
-  if (!constant) return {1, std::move(texture)};
-  return {checked(value, (*constant)[texture.channel] * texture.scale.x), {}};
-}
-
-TripleReading read_triple(const Value& value) {
-  if (!is_texture(value)) return {value.number_or_triple(), {}};
-  Texture texture = read_texture(value, TexturePart::triple);
-  if (const std::optional<Vec3d> constant = constant_of(value, texture)) return {*constant, {}};
-  return {Vec3d(1), std::move(texture)};
+void read_textured(const Value& value, Vec3d& triple, std::optional<Texture>& texture) {
+  const bool is_color = value.info().type == ValueType::color;
+  triple = is_texture(value) ? Vec3d(1) : is_color ? value.color() : value.number_or_triple();
+  if (!is_texture(value)) return;
+  texture = read_texture(value, is_color ? TexturePart::color : TexturePart::triple);
+  const std::optional<Texel>& constant = texture->file->constant();
+  if (!constant) return;
+  for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, (*constant)[c] * texture->scale[c]);
+  texture.reset();
 }
 
 Texture read_normal_map(const Value& value) {

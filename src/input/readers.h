@@ -19,24 +19,10 @@ struct ShapeContext {
   std::map<std::string, std::size_t> group_media;  ///< filled while reading
 };
 
-/// A colour, or a texture with the colour 1. A file with equal texels becomes a constant.
-struct ColorReading {
-  Rgb color{1, 1, 1};
-  std::optional<Texture> texture;
-};
-ColorReading read_color(const Value& value);
-/// The same for a number.
-struct NumberReading {
-  double number = 1;
-  std::optional<Texture> texture;
-};
-NumberReading read_number(const Value& value);
-/// The same for a number for each of R, G and B; texels are linear by default.
-struct TripleReading {
-  Vec3d triple{1, 1, 1};
-  std::optional<Texture> texture;
-};
-TripleReading read_triple(const Value& value);
+/// Reads a number, or a texture with the number 1. A file with equal texels becomes a constant.
+void read_textured(const Value& value, double& number, std::optional<Texture>& texture);
+/// The same for a colour, or a number for each of R, G and B; texels of the latter are linear by default.
+void read_textured(const Value& value, Vec3d& triple, std::optional<Texture>& texture);
 Texture read_normal_map(const Value& value);
 /// Height map with its scale in mm; none: flat.
 std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);

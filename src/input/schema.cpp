@@ -217,8 +217,9 @@ std::vector<KeyInfo> texture_rows() {
 }
 
 std::vector<KeyInfo> all_rows() {
-  std::vector<KeyInfo> rows;
-  for (const auto& part : {scene_rows(), medium_rows(), shape_rows(), built_in_shape_rows(), texture_rows(),
+  std::vector<KeyInfo> rows = scene_rows();
+  for (const MediumRow& row : medium_rows()) rows.push_back(row.info);
+  for (const auto& part : {shape_rows(), built_in_shape_rows(), texture_rows(),
                            light_rows(static_cast<const LightSource*>(nullptr)), camera_rows()})
     rows.insert(rows.end(), part.begin(), part.end());
   for (const Member<Film>& member : film_members()) rows.push_back(member.info);
@@ -264,16 +265,6 @@ std::span<const std::string_view> section_keys(std::string_view section) {
 std::string settings_path(std::string_view key) {
   const bool is_laboratory = std::ranges::count(section_keys("settings.laboratory"), key) > 0;
   return fmt::format("settings.{}{}", is_laboratory ? "laboratory." : "", key);
-}
-
-std::string settings_json(const Scene& scene) {
-  std::string json;
-  const auto add = [&](const KeyInfo& info, const std::string& value) {
-    if (!value.empty()) json += fmt::format("{}\"{}\":{}", json.empty() ? "" : ",", info.key, value);
-  };
-  for (const Member<Settings>& member : settings_members()) add(member.info, member.json(scene.settings));
-  for (const Member<Film>& member : film_members()) add(member.info, member.json(scene.film));
-  return '{' + json + '}';
 }
 
 }  // namespace opaline

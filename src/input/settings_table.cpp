@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <optional>
 #include <type_traits>
 
@@ -27,24 +28,19 @@ constexpr std::string_view kSection<Laboratory> = "settings.laboratory";
 // ---- members of one value ---------------------------------------------------------------------------------
 
 template <class T>
-struct WithoutOptional {
-  using Type = T;
-};
-template <class T>
-struct WithoutOptional<std::optional<T>> {
-  using Type = T;
-};
-
-template <class T>
-T read_as(const Value& value, double mm_per_unit) {
+void read_into(T& member, const Value& value, double mm_per_unit) {
   if constexpr (std::is_same_v<T, bool>)
-    return value.flag();
+    member = value.flag();
   else if constexpr (std::is_enum_v<T>)
-    return T(value.choice());
+    member = T(value.choice());
   else if constexpr (std::is_integral_v<T>)
-    return T(value.whole_number());
+    member = T(value.whole_number());
   else
-    return value.info().type == ValueType::length ? value.length(mm_per_unit) : value.number();
+    member = value.info().type == ValueType::length ? value.length(mm_per_unit) : value.number();
+}
+template <class T>
+void read_into(std::optional<T>& member, const Value& value, double mm_per_unit) {
+  read_into(member.emplace(), value, mm_per_unit);
 }
 
 template <class T>
@@ -67,11 +63,11 @@ T value_of(T Owner::*);
 /// Row of a value for one member. Without a documented default, shows the member's.
 template <auto kMember>
 auto member(std::string_view key, ValueType type, std::string_view unit, const Range& range,
-            std::string default_value, std::string_view meaning) {
+            std::string default_value, std::vector<KeyedStage> stages, std::string_view meaning) {
   using Owner = decltype(owner_of(kMember));
   using T = decltype(value_of(kMember));
   const auto read = [](Owner& owner, const Value& value, double mm_per_unit) {
-    owner.*kMember = read_as<typename WithoutOptional<T>::Type>(value, mm_per_unit);
+    read_into(owner.*kMember, value, mm_per_unit);
   };
   const auto json = [](const Owner& owner) { return json_of(owner.*kMember); };
   KeyInfo info{kSection<Owner>, key, type, unit, range, std::move(default_value), meaning};
@@ -80,7 +76,7 @@ auto member(std::string_view key, ValueType type, std::string_view unit, const R
     info.default_value = json(Owner{});
     if (type == ValueType::choice) info.default_value = '`' + info.default_value + '`';
   }
-  return Member<Owner>{std::move(info), read, json};
+  return Member<Owner>{std::move(info), read, json, std::move(stages)};
 }
 
 Member<Settings> read_by(void (*read)(Settings&, const Value&, double), Member<Settings> member) {
@@ -98,17 +94,23 @@ void read_tolerance(Settings& settings, const Value& value, double) {
 }
 
 void read_laboratory(Settings& settings, const Value& value, double mm_per_unit) {
-  const ObjectReader reader(value, kSection<Laboratory>);
-  for (const Member<Laboratory>& member : laboratory_members())
-    if (const std::optional<Value> given = reader.find(member.info.key))
-      member.read(settings.laboratory, *given, mm_per_unit);
+  settings.laboratory = read_members(value, kSection<Laboratory>, laboratory_members(), mm_per_unit);
+}
+
+/// Adds "key":value for each member with a value, of one stage or of all.
+template <class Owner>
+void add_json(std::string& json, std::span<const Member<Owner>> members, const Owner& owner,
+              std::optional<KeyedStage> stage = {}) {
+  for (const Member<Owner>& member : members) {
+    if (stage && std::ranges::count(member.stages, *stage) == 0) continue;
+    if (const std::string value = member.json(owner); !value.empty())
+      json += fmt::format("{}\"{}\":{}", json.empty() ? "" : ",", member.info.key, value);
+  }
 }
 
 std::string laboratory_json(const Settings& settings) {
   std::string json;
-  for (const Member<Laboratory>& member : laboratory_members())
-    json += fmt::format("{}\"{}\":{}", json.empty() ? "" : ",", member.info.key,
-                        member.json(settings.laboratory));
+  add_json(json, laboratory_members(), settings.laboratory);
   return '{' + json + '}';
 }
 
@@ -149,29 +151,34 @@ std::string pixel_type_json(const Film& film) {
 
 std::span<const Member<Film>> film_members() {
   using enum ValueType;
+  using enum KeyedStage;
   static const std::vector<Member<Film>> table{
       {row("film", "resolution", list, "pixels, each 1 to 65536, at most 2^28 in total", {1, kLargestSide},
            "[512, 512]", "image size, [width, height]"),
-       read_resolution, resolution_json},
+       read_resolution,
+       resolution_json,
+       {view}},
       {row("film", "crop", list, "pixels", {0, kLargestSide}, "everything",
            "renders only the pixels [x0, y0, x1, y1], counted from the top left, without x1 and y1"),
-       read_crop, crop_json},  // after the resolution, as it must lie within
+       read_crop,
+       crop_json,
+       {view}},  // after the resolution, as it must lie within
       member<&Film::samples_per_pixel>("samples_per_pixel", whole_number, "", {1, 65536}, "",
-                                       "camera rays per pixel"),
-      member<&Film::filter>("filter", choice, "", kFiniteNumber, "",
+                                       {view, view_near}, "camera rays per pixel"),
+      member<&Film::filter>("filter", choice, "", kFiniteNumber, "", {view},
                             "pixel filter: `\"box\"`: one pixel wide; `\"gaussian\"`: softer, standard "
                             "deviation 0.5, radius 1.5 pixels"),
       {row("film", "pixel_type", choice, "", kFiniteNumber, "`\"half\"`",
            "bits per value of the EXR: `\"half\"`: 16; `\"float\"`: 32", kPixelTypes),
        read_pixel_type, pixel_type_json},
-      member<&Film::exposure>("exposure", number, "stops", {-100, 100}, "",
+      member<&Film::exposure>("exposure", number, "stops", {-100, 100}, "", {},
                               "exposure of the PNG; one stop is a factor of 2"),
       member<&Film::view>(
-          "view", choice, "", kFiniteNumber, "",
+          "view", choice, "", kFiniteNumber, "", {},
           "tone mapping of the PNG: `\"soft\"`: unchanged below 0.8 of white, compressed above; "
           "`\"neutral\"`: Khronos PBR Neutral, compressed above 0.8 of white, after subtracting up to 0.04; "
           "`\"agx\"`: AgX, filmic, with less contrast and saturation; `\"srgb\"`: clipped at white"),
-      member<&Film::color_space>("color_space", choice, "", kFiniteNumber, "",
+      member<&Film::color_space>("color_space", choice, "", kFiniteNumber, "", {},
                                  "colour space of the EXR: `\"lin_rec709\"`: that of the scene; "
                                  "`\"acescg\"`: converted to ACEScg (AP1)"),
   };
@@ -180,9 +187,10 @@ std::span<const Member<Film>> film_members() {
 
 std::span<const Member<Settings>> settings_members() {
   using enum ValueType;
+  using enum KeyedStage;
   static const std::vector<Member<Settings>> table{
       member<&Settings::method>(
-          "method", choice, "", kFiniteNumber, "",
+          "method", choice, "", kFiniteNumber, "", {surfaces, view_surfaces},
           "`\"auto\"`: for each body `\"volume_diffusion\"`, or `\"hierarchical\"` if its mesh is open, its "
           "profile or the evaluator is set, or cells would cost far more; `\"hierarchical\"`: BSSRDF with a "
           "radial profile, by hierarchical evaluation; `\"lambert\"`: "
@@ -191,7 +199,7 @@ std::span<const Member<Settings>> settings_members() {
           "reference; `\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the "
           "reference"),
       member<&Settings::evaluator>(
-          "evaluator", choice, "", kFiniteNumber, "",
+          "evaluator", choice, "", kFiniteNumber, "", {exitance, surfaces},
           "hierarchical evaluation: `\"dual_tree\"`: clusters of shading points against octree nodes, to "
           "`tolerance`; `\"surface_cache\"`: the same at points all over the surface, interpolated at "
           "shading points; `\"automatic\"`: one of the two, depending on the number of points; "
@@ -199,44 +207,46 @@ std::span<const Member<Settings>> settings_members() {
           "sum, slow"),
       read_by(read_tolerance,
               member<&Settings::tolerance>(
-                  "tolerance", number, "", {kLeastTolerance, 1}, "",
+                  "tolerance", number, "", {kLeastTolerance, 1}, "", {exitance, surfaces},
                   "evaluators `dual_tree` and `surface_cache`: maximum relative error against the exact sum, "
                   "at 99 % of the points; single precision sets the lower limit")),
       member<&Settings::sample_spacing>("sample_spacing", length, "", kFiniteNumber,
-                                        "from the medium's mean free path",
+                                        "from the medium's mean free path", {},
                                         "distance between samples, sqrt(area / samples)"),
-      member<&Settings::samples>("samples", whole_number, "", {1, kMostSamples}, "from the spacing",
+      member<&Settings::samples>("samples", whole_number, "", {1, kMostSamples}, "from the spacing", {},
                                  "number of samples per body; overrides `sample_spacing`; `volume_diffusion` "
                                  "uses at least one per surface cell"),
-      member<&Settings::max_samples>("max_samples", whole_number, "", {1, kMostSamples}, "",
+      member<&Settings::max_samples>("max_samples", whole_number, "", {1, kMostSamples}, "", {},
                                      "maximum number of samples per body"),
       member<&Settings::light_samples>("light_samples", whole_number, "", {1, 65536}, "",
+                                       {transfers, exitance, view_surfaces},
                                        "shadow rays per sample, and per pixel of an opaque surface, to each "
                                        "area light and to the surroundings; with more than 16 lights: to all "
                                        "area lights together, and a third as many to all other lights"),
       member<&Settings::entry_samples>(
           "entry_samples", whole_number, "", {1, kMostSamples},
-          fmt::format("{}, or enough for `until_error`", kDefaultEntrySamples),
+          fmt::format("{}, or enough for `until_error`", kDefaultEntrySamples), {},
           "`direct`: sampled points of entry per pixel, rounded to whole passes of 16"),
-      member<&Settings::until_error>("until_error", number, "", {0, 1, true}, "none",
+      member<&Settings::until_error>("until_error", number, "", {0, 1, true}, "none", {},
                                      "`direct`, `volume`: relative noise at which to stop (rms of the "
                                      "estimated standard error of the pixels or cells)"),
       member<&Settings::cell_size>(
-          "cell_size", number, "mean free paths", {.05, 100}, "",
+          "cell_size", number, "mean free paths", {.05, 100}, "", {cells},
           "`volume_diffusion`: size of the cells at the surface, in mean free paths or, if shorter, in units "
           "of 0.45 diffuse mean free paths; smaller cells are slower and more accurate"),
       member<&Settings::reenter>(
-          "reenter", flag, "", kFiniteNumber, "",
+          "reenter", flag, "", kFiniteNumber, "", {walks},
           "`volume`: re-entry of outgoing and reflected light into the same body, as in concavities; "
           "`false`: such light is lost. Other methods: `bounces`"),
       member<&Settings::bounces>(
-          "bounces", whole_number, "", {0, 1}, "1 if one surface can light another",
+          "bounces", whole_number, "", {0, 1}, "1 if one surface can light another", {},
           "all methods but `volume`: 1: one bounce of light between surfaces, such as from a floor to the "
           "object on it, or within one body; 0: direct light only"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
+                              {samples, transfers, exitance, walks, surfaces, gathered, view_surfaces},
                               "random seed; the same seed gives the same image"),
       member<&Settings::reference_frame>(
-          "reference_frame", whole_number, "", {0, 1e9}, "",
+          "reference_frame", whole_number, "", {0, 1e9}, "", {},
           "frame ranges: samples are placed on the surfaces of this frame and move with them in all others"),
       {row("settings", "laboratory", object, "", kFiniteNumber, "none",
            "switches for experiments, see `docs/laboratory.md`"),
@@ -247,26 +257,42 @@ std::span<const Member<Settings>> settings_members() {
 
 std::span<const Member<Laboratory>> laboratory_members() {
   using enum ValueType;
+  using enum KeyedStage;
   static const std::vector<Member<Laboratory>> table{
-      member<&Laboratory::instruction_set>("instruction_set", choice, "", kFiniteNumber, "",
+      member<&Laboratory::instruction_set>("instruction_set", choice, "", kFiniteNumber, "", {exitance},
                                            "SIMD instructions of the dual tree: `\"automatic\"` (the widest "
                                            "of the processor), `\"baseline\"`, `\"avx2\"` or `\"avx512\"`"),
-      member<&Laboratory::max_solid_angle>("max_solid_angle", number, "sr", {0, 1e30, true}, "",
+      member<&Laboratory::max_solid_angle>("max_solid_angle", number, "sr", {0, 1e30, true}, "", {surfaces},
                                            "evaluator `classic`: maximum solid angle of an octree node that "
                                            "is evaluated as a whole; smaller is slower and more accurate"),
       member<&Laboratory::near_field>(
-          "near_field", flag, "", kFiniteNumber, "",
+          "near_field", flag, "", kFiniteNumber, "", {kernel},
           "integrates the kernel near the shading point separately; `false` requires many more samples"),
       member<&Laboratory::near_irradiance>(
-          "near_irradiance", choice, "", kFiniteNumber, "",
+          "near_irradiance", choice, "", kFiniteNumber, "", {kernel},
           "irradiance of the near field: `\"samples\"`: mean of the samples around the point; `\"point\"`: "
           "traced at the point; `\"mixed\"`: a blend that preserves the width of the kernel, traced at "
           "surrounding points where the two differ"),
-      member<&Laboratory::entry_strategy>("entry_strategy", choice, "", kFiniteNumber, "",
+      member<&Laboratory::entry_strategy>("entry_strategy", choice, "", kFiniteNumber, "", {},
                                           "method `direct`, sampling of entry points: `\"disc_axes\"`: lines "
                                           "through discs along three axes; `\"chords\"`: chords of spheres"),
   };
   return table;
+}
+
+std::string settings_json(const Scene& scene) {
+  std::string json;
+  add_json(json, settings_members(), scene.settings);
+  add_json(json, film_members(), scene.film);
+  return '{' + json + '}';
+}
+
+std::string settings_in_key(KeyedStage stage, const Scene& scene) {
+  std::string json;
+  add_json(json, film_members(), scene.film, stage);
+  add_json(json, settings_members(), scene.settings, stage);
+  add_json(json, laboratory_members(), scene.settings.laboratory, stage);
+  return json;
 }
 
 }  // namespace opaline

@@ -8,12 +8,14 @@
 #include <numbers>
 #include <optional>
 
+#include "bodies/body.h"
 #include "geometry/surface_point.h"
 #include "opaline/scene.h"
 #include "subsurface/hit_textures.h"
 #include "transport/angular_exit.h"
 #include "transport/fresnel.h"
 #include "transport/rough_boundary.h"
+#include "transport/shared_roughness.h"
 
 namespace opaline {
 
@@ -28,9 +30,15 @@ struct Appearance {
   /// Range of a textured or anisotropic roughness.
   std::shared_ptr<const RoughnessRange> roughnesses = {};
   float roughness = 0;  ///< where it is no texture
+  const Texture *roughness_texture = nullptr, *metalness_texture = nullptr;
   /// Angular distribution of light traced inside; none: given by the boundary.
   std::shared_ptr<const AngularExit> exit = {};
 
+  /// Looks up the textures of numbers.
+  void look_up(const SurfaceTextures::Place& place, HitTextures& here) const {
+    here.roughness = number_at(roughness_texture, place);
+    here.metalness = number_at(metalness_texture, place);
+  }
   /// Appearance at a point with known textures.
   Appearance at(const HitTextures& textures) const {
     Appearance here = *this;
@@ -79,6 +87,46 @@ struct Appearance {
     return albedo + (RgbF(1) - albedo) * grazing;
   }
 };
+
+inline void roughen(Appearance& appearance, double roughness, const std::optional<Texture>& texture,
+                    const Grain& grain, double eta) {
+  const float anisotropy = float(grain.anisotropy);
+  appearance.roughness = float(roughness);
+  appearance.roughness_texture = pointer_to(texture);
+  if (texture)
+    appearance.roughnesses = shared_roughness(eta, anisotropy);
+  else if (roughness > 0 && anisotropy > 0)
+    appearance.roughnesses = shared_roughness(eta, anisotropy, appearance.roughness);
+  else if (roughness > 0)
+    appearance.rough.emplace(roughness, eta);
+}
+
+inline Appearance opaque_appearance(const Shape& shape) {
+  Appearance appearance{.albedo = RgbF(shape.reflectance), .rough = {}};
+  if (!shape.gloss) return appearance;
+  const Gloss& gloss = *shape.gloss;
+  appearance.eta = float(gloss.eta);
+  appearance.average_reflectance = float(average_reflectance_outside(gloss.eta));
+  appearance.has_boundary = true;
+  appearance.metalness = float(gloss.metalness);
+  appearance.metalness_texture = pointer_to(gloss.metalness_texture);
+  roughen(appearance, gloss.roughness, gloss.roughness_texture, gloss.grain, gloss.eta);
+  return appearance;
+}
+
+/// follows_light: true if the method traces light inside, and its radiance has the angular distribution of a
+/// half space
+inline Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool follows_light) {
+  if (!shape.medium) return opaque_appearance(shape);
+  const Medium& medium = scene.media[*shape.medium];
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  Appearance appearance{true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), {},
+                        true};
+  roughen(appearance, medium.specular_roughness, medium.roughness_texture, medium.grain, medium.eta);
+  if (follows_light)
+    appearance.exit = std::make_shared<const AngularExit>(reduced_absorption(medium), medium.eta);
+  return appearance;
+}
 
 /// Cosine of the view direction with the shading normal, at least half of its cosine with the geometric
 /// normal. On coarse meshes a shading normal may face away from a camera facing the triangle, and the

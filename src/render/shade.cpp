@@ -10,49 +10,9 @@
 #include "render/bounced_light.h"
 #include "render/camera_rays.h"
 #include "subsurface/method.h"
-#include "transport/fresnel.h"
-#include "transport/shared_roughness.h"
 
 namespace opaline {
 namespace {
-
-void roughen(Appearance& appearance, double roughness, bool is_texture, const Grain& grain, double eta) {
-  const float anisotropy = float(grain.anisotropy);
-  appearance.roughness = float(roughness);
-  if (is_texture)
-    appearance.roughnesses = shared_roughness(eta, anisotropy);
-  else if (roughness > 0 && anisotropy > 0)
-    appearance.roughnesses = shared_roughness(eta, anisotropy, appearance.roughness);
-  else if (roughness > 0)
-    appearance.rough.emplace(roughness, eta);
-}
-
-Appearance opaque_appearance(const Shape& shape) {
-  Appearance appearance{.albedo = RgbF(shape.reflectance), .rough = {}};
-  if (!shape.gloss) return appearance;
-  const Gloss& gloss = *shape.gloss;
-  appearance.eta = float(gloss.eta);
-  appearance.average_reflectance = float(average_reflectance_outside(gloss.eta));
-  appearance.has_boundary = true;
-  appearance.metalness = float(gloss.metalness);
-  roughen(appearance, gloss.roughness, gloss.roughness_texture.has_value(), gloss.grain, gloss.eta);
-  return appearance;
-}
-
-/// follows_light: true if the method traces light inside, and its radiance has the angular distribution of a
-/// half space
-Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool follows_light) {
-  if (!shape.medium) return opaque_appearance(shape);
-  const Medium& medium = scene.media[*shape.medium];
-  const DiffuseProfile profile = make_diffuse_profile(medium);
-  Appearance appearance{true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), {},
-                        true};
-  roughen(appearance, medium.specular_roughness, medium.roughness_texture.has_value(), medium.grain,
-          medium.eta);
-  if (follows_light)
-    appearance.exit = std::make_shared<const AngularExit>(reduced_absorption(medium), medium.eta);
-  return appearance;
-}
 
 /// Bends the shading normal back until the camera direction reflects to the outside of the surface.
 /// in    direction: of the camera ray at the point, of any length
@@ -265,8 +225,8 @@ void Shader::add_textures(const RayBatch& batch, std::size_t ray, bool from_behi
   textures_.bend(place, point);
   const bool is_bent = point.normal != unbent;
   if (is_bent) keep_mirrored_outside(point, traced.direction);
-  HitTextures here{textures_.tint(place), textures_.reflected(place), textures_.roughness(place),
-                   textures_.metalness(place)};
+  HitTextures here{textures_.tint(place), textures_.reflected(place)};
+  appearances_[hit.mesh].look_up(place, here);
   here.is_bent = is_bent;
   here.tangent = textures_.tangent(place, point);
   if (here.tangent != Vec3f{}) {

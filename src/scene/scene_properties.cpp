@@ -28,23 +28,11 @@ int bounces_of(const Scene& scene) {
 
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) {
   std::vector<const Texture*> textures;
-  const auto add = [&](const std::optional<Texture>& texture) {
+  const auto add = [&](const auto&, const std::optional<Texture>& texture, SurfacePart) {
     if (texture) textures.push_back(&*texture);
   };
-  add(shape.reflectance_texture);
-  add(shape.normal_map);
-  add(shape.bump_map);
-  if (shape.gloss) {
-    add(shape.gloss->metalness_texture);
-    add(shape.gloss->roughness_texture);
-  }
-  if (!shape.medium) return textures;
-  add(scene.media[*shape.medium].tint_texture);
-  add(scene.media[*shape.medium].roughness_texture);
-  add(scene.media[*shape.medium].radius_texture);
-  if (!is_partly_opaque(scene.media[*shape.medium])) return textures;
-  add(scene.media[*shape.medium].weight_texture);
-  add(scene.media[*shape.medium].base_texture);
+  for_each_textured(shape, add);
+  if (shape.medium) for_each_textured(scene.media[*shape.medium], add);
   return textures;
 }
 

@@ -2,6 +2,7 @@
 // Indirect light: at the samples of bodies and at cache points of the image.
 #include <memory>
 
+#include "input/settings_table.h"
 #include "render/bounced_light.h"
 #include "session/session_state.h"
 #include "stages/stage_codecs.h"
@@ -72,7 +73,7 @@ HeldView* Session::State::held_view_of_samples(const PrecomputeInput& input) {
   HeldView* const view = held_view();
   if (view == nullptr) return nullptr;
   KeyBuilder builder("gathered at samples", 1);
-  builder.add(scene_.settings.seed).add(input.plan.rays);
+  builder.add(settings_in_key(KeyedStage::gathered, scene_)).add(input.plan.rays);
   for (const MeshKeys& mesh : mesh_keys_) builder.add(mesh.all);
   for (const BodyKeys& known : keys_) builder.add(known.samples_key);
   const StageKey key = builder.key();

@@ -12,8 +12,7 @@ namespace opaline {
 namespace {
 
 bool is_from_this_plan(const SampleOrigin& origin, const PrecomputeInput& input, std::size_t group) {
-  return origin.key != StageKey{} && origin.count == input.plan.groups[group].samples &&
-         origin.seed == sampling_seed(input.scene.settings, group);
+  return origin.key != StageKey{} && origin.placement == placement_key(input, group);
 }
 
 void renumber(std::vector<SurfaceSample>& samples, const std::vector<std::uint32_t>& from,
@@ -109,7 +108,7 @@ void Session::State::place_new_samples(Body& body, BodyKeys& known, const Precom
     known.origin = {world_,
                     known.meshes,
                     key,
-                    sampling_seed(settings, group),
+                    placement_key(input, group),
                     body.plan.samples,
                     body.surface.area * world_->unit * world_->unit,
                     {},

@@ -14,8 +14,7 @@ namespace opaline {
 struct SampleOrigin {
   std::shared_ptr<const World> world;
   std::vector<std::uint32_t> meshes;  // indices in that world
-  StageKey key;
-  std::uint64_t seed = 0;
+  StageKey key, placement;
   std::size_t count = 0;       // requested
   double area = 0;             // area of the surface at that time, mm^2
   SurfaceSamples surface;      // while the body's own are carried; otherwise the body's own are these

@@ -3,6 +3,7 @@
 
 #include "bodies/surface_textures.h"
 #include "geometry/embree.h"
+#include "input/settings_table.h"
 #include "lights/light.h"
 #include "scene/scene_properties.h"
 
@@ -43,11 +44,16 @@ std::vector<MeshKeys> mesh_keys(const World& world) {
   return keys;
 }
 
+StageKey placement_key(const PrecomputeInput& input, std::size_t group) {
+  KeyBuilder key("placement", kSamplesVersion);
+  key.add(std::uint64_t(input.plan.groups[group].samples)).add(std::uint64_t(group));
+  return key.add(settings_in_key(KeyedStage::samples, input.scene)).key();
+}
+
 StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group) {
-  const BodyPlan& plan = input.plan.groups[group];
   KeyBuilder key("samples", kSamplesVersion);
-  key.add(std::uint64_t(plan.samples)).add(sampling_seed(input.scene.settings, group));
-  for (const std::uint32_t m : plan.meshes) key.add(meshes[m].all);
+  key.add(placement_key(input, group));
+  for (const std::uint32_t m : input.plan.groups[group].meshes) key.add(meshes[m].all);
   return key.key();
 }
 
@@ -69,13 +75,14 @@ StageKey carried_samples_key(const StageKey& from, const BodyPlan& group, std::s
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light) {
   const BodyPlan& plan = input.plan.groups[group];
-  const Settings& settings = input.scene.settings;
   KeyBuilder key("transfer", kTransferVersion);
   key.add(embree_version()).add(std::string(widest_instructions()));
   key.add(samples).add(input.scene.media[plan.medium].eta).add(std::uint64_t(light.source.index()));
   key.add_array(std::span<const double>(geometry(light)));
   if (!is_delta(light))
-    key.add(settings.light_samples).add(light_seed(irradiance_seed(settings, group), light));
+    key.add(settings_in_key(KeyedStage::transfers, input.scene))
+        .add(std::uint64_t(group))
+        .add(light_seed(0, light));
   if (plan.cell > 0) key.add(std::string("geometric normals"));
   for (std::uint32_t m = 0; m < meshes.size(); ++m)
     if (may_shadow(meshes, m, plan, light, input.world.unit)) key.add(meshes[m].shape);
@@ -84,27 +91,20 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 
 StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
                       std::span<const Light> lights) {
-  const Settings& settings = input.scene.settings;
   KeyBuilder key("surfaces in their light", 4);
-  key.add(settings.seed)
-      .add(settings.tolerance)
-      .add(settings.evaluator)
-      .add(settings.laboratory.max_solid_angle);
+  key.add(settings_in_key(KeyedStage::surfaces, input.scene));
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  const auto add_value = [&key](const auto& value, const auto&, SurfacePart) { key.add(value); };
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];
+    for_each_textured(shape, add_value);
+    key.add(shape.medium.has_value()).add(shape.gloss.has_value());
     if (shape.medium) {
       const Medium& medium = input.scene.media[*shape.medium];
-      key.add(medium.tint).add(medium.texture_mix).add(medium.eta).add(medium.specular_roughness);
-      if (medium.texture_mix == TextureMix::medium) key.add(settings.method);
-      key.add(medium.grain.anisotropy).add(medium.grain.rotation);
-      if (is_partly_opaque(medium)) key.add(medium.subsurface_weight).add(medium.base_color);
-    } else {
-      key.add(shape.reflectance).add(shape.gloss.has_value());
-      if (const auto& gloss = shape.gloss) {
-        key.add(gloss->metalness).add(gloss->roughness).add(gloss->eta);
-        key.add(gloss->grain.anisotropy).add(gloss->grain.rotation);
-      }
+      for_each_textured(medium, add_value);
+      key.add(medium.texture_mix).add(medium.eta).add(medium.grain.anisotropy).add(medium.grain.rotation);
+    } else if (const auto& gloss = shape.gloss) {
+      key.add(gloss->eta).add(gloss->grain.anisotropy).add(gloss->grain.rotation);
     }
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
     if (uvs_of(input.scene, shape) != MeshUvs::unread) add_coordinates(key, input.world.meshes[i]);
@@ -117,21 +117,17 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
 
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes) {
   const Camera& camera = input.scene.camera;
-  const Film& film = input.scene.film;
   KeyBuilder key("view", 2);
   key.add(camera.position).add(camera.look_at).add(camera.up).add(camera.field_of_view);
   key.add(input.world.origin).add(input.world.unit);
-  key.add(film.resolution).add(film.samples_per_pixel).add(film.filter);
-  if (film.crop) key.add(*film.crop);
-  key.add(input.plan.rays);
+  key.add(settings_in_key(KeyedStage::view, input.scene)).add(input.plan.rays);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   return key.key();
 }
 
 StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> lights) {
-  const Settings& settings = input.scene.settings;
   KeyBuilder key("surfaces of the view", 1);
-  key.add(settings.method).add(settings.light_samples).add(point_irradiance_seed(settings));
+  key.add(settings_in_key(KeyedStage::view_surfaces, input.scene));
   for (const Light& light : lights)
     if (!is_delta(light)) {
       key.add(view_light_key(light));
@@ -152,7 +148,7 @@ StageKey view_surfaces_key(const PrecomputeInput& input, std::span<const Light> 
 StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
                        const StageKey& surfaces) {
   KeyBuilder key("near fields of the view", 1);
-  key.add(surfaces).add(input.scene.film.samples_per_pixel).add(input.plan.rays);
+  key.add(surfaces).add(settings_in_key(KeyedStage::view_near, input.scene)).add(input.plan.rays);
   key.add(input.world.origin).add(input.world.unit);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   return key.key();
@@ -160,13 +156,16 @@ StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> m
 
 StageKey view_coats_key(const Scene& scene) {
   KeyBuilder key("coats of the view", 1);
+  const auto add_boundary = [&key](const auto& value, const auto&, SurfacePart part) {
+    if (part == SurfacePart::boundary) key.add(value);
+  };
   for (const Shape& shape : scene.shapes) {
-    if (shape.medium) {
-      const Medium& medium = scene.media[*shape.medium];
-      key.add(medium.specular_roughness).add(medium.grain.anisotropy).add(medium.grain.rotation);
-    }
-    if (shape.gloss)
-      key.add(shape.gloss->roughness).add(shape.gloss->grain.anisotropy).add(shape.gloss->grain.rotation);
+    for_each_textured(shape, add_boundary);
+    if (shape.gloss) key.add(shape.gloss->grain.anisotropy).add(shape.gloss->grain.rotation);
+    if (!shape.medium) continue;
+    const Medium& medium = scene.media[*shape.medium];
+    for_each_textured(medium, add_boundary);
+    key.add(medium.grain.anisotropy).add(medium.grain.rotation);
   }
   return key.key();
 }

@@ -28,7 +28,9 @@ MeshKeys mesh_keys(const Mesh& mesh);
 /// Keys of each mesh of the world.
 std::vector<MeshKeys> mesh_keys(const World& world);
 
-/// Cache key of a body's placed samples: its meshes, the number of samples and the random numbers.
+/// Key of the placement of a body's samples on any surface: their number and the random numbers.
+StageKey placement_key(const PrecomputeInput& input, std::size_t group);
+/// Cache key of a body's placed samples: its meshes and their placement.
 StageKey samples_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes, std::size_t group);
 
 /// Cache key of a body's samples on cells cutting its meshes.

@@ -10,11 +10,11 @@ namespace opaline {
 
 struct HitTextures {
   SurfaceTint tint;
-  RgbF reflected{};                           ///< SurfaceTextures::reflected
-  std::optional<float> roughness, metalness;  ///< none: the surface's own
-  bool is_bent = false;                       ///< maps have turned the shading normal
-  Vec3f tangent{};                            ///< SurfaceTextures::tangent
-  float tangent_share = 0;                    ///< cos^2 of the view direction's azimuth from the tangent
+  RgbF reflected{};                               ///< SurfaceTextures::reflected
+  std::optional<float> roughness{}, metalness{};  ///< none: the surface's own
+  bool is_bent = false;                           ///< maps have turned the shading normal
+  Vec3f tangent{};                                ///< SurfaceTextures::tangent
+  float tangent_share = 0;                        ///< cos^2 of the view direction's azimuth from the tangent
 };
 
 }  // namespace opaline

@@ -145,7 +145,7 @@ TEST(CacheEntries, NotThisEntry) {
       {whole.substr(1024), "is not a cache entry"},
       {std::string(5000, '\0'), "is not a cache entry"},
       {"PNG" + whole, "is not a cache entry"},
-      {with("format 3", "format 2"), "does not have this program's version"},
+      {with("format 4", "format 3"), "does not have this program's version"},
       {with("stage samples", "stage light  "), "is damaged"},
       {with("0123456789abcdef", "0000000000000000"), "is damaged"},
   };

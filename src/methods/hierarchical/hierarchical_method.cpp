@@ -10,6 +10,7 @@
 #include "diffusion/tabulated.h"
 #include "exitance/cloud_error.h"
 #include "exitance/evaluate.h"
+#include "input/settings_table.h"
 #include "lights/light.h"
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/sample_field.h"
@@ -108,7 +109,7 @@ void update_kernels(BodyStages& stages) {
   if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
   if (profile_kind(medium) == ProfileKind::normalized_diffusion) key.add(profile_fit(medium));
   key.add(spacing).add(world.diagonal).add(world.unit);
-  key.add(scene.settings.laboratory.near_field).add(near_irradiance(scene));
+  key.add(settings_in_key(KeyedStage::kernel, scene)).add(near_irradiance(scene));
   stages.store.get(state_of<HierarchicalState>(stages.body).kernels, key.key(), [&] {
     find_walked_profiles(stages);
     return Kernels{body_kernel(body.profile, spacing, stages.input.world, stages.input.scene),
@@ -117,14 +118,9 @@ void update_kernels(BodyStages& stages) {
 }
 
 StageKey exitance_key(const BodyStages& stages, const HierarchicalState& state) {
-  const Settings& settings = stages.input.scene.settings;
   KeyBuilder key("exitance", kExitanceVersion);
-  key.add(state.tree.key)
-      .add(state.kernels.key)
-      .add(settings.tolerance)
-      .add(settings.laboratory.instruction_set);
-  key.add(settings.evaluator == EvaluatorKind::surface_cache);
-  key.add(settings.light_samples).add(settings.seed);
+  key.add(state.tree.key).add(state.kernels.key);
+  key.add(settings_in_key(KeyedStage::exitance, stages.input.scene));
   key.add(std::string(widest_instructions()));
   for (const std::uint32_t m : stages.body.plan.meshes) key.add(stages.mesh_keys[m].all);
   return key.key();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bodies/surface_textures.h"
+#include "input/settings_table.h"
 #include "lights/light.h"
 #include "lights/light_tree.h"
 #include "methods/volume/cell_field.h"
@@ -28,7 +29,7 @@ std::vector<StageKey> walk_keys(const BodyStages& stages, const VolumeInput& wal
   KeyBuilder common("random walks", kWalksVersion);
   common.add(embree_version()).add(std::string(widest_instructions()));
   common.add(tint == StageKey{} ? stages.keys.samples_key : tint);
-  common.add(walks.seed).add(walks.reenter);
+  common.add(settings_in_key(KeyedStage::walks, stages.input.scene));
   for (const HomogeneousMedium& medium : walks.media) common.add(medium);
   if (medium_inside != StageKey{}) common.add(medium_inside);
   for (const std::uint32_t m : walks.meshes) common.add(m);

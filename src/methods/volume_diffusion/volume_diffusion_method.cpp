@@ -9,6 +9,7 @@
 
 #include "bodies/local_media.h"
 #include "bodies/surface_textures.h"
+#include "input/settings_table.h"
 #include "methods/volume/cell_field.h"
 #include "methods/volume/cell_warnings.h"
 #include "methods/volume_diffusion/volume_diffusion_state.h"
@@ -62,6 +63,7 @@ StageKey cells_key(const BodyStages& stages) {
   const StageKey medium_inside =
       medium_key(stages.input.scene.media[body.plan.medium], stages.input.world, body.plan.meshes);
   KeyBuilder key("diffusion cells", kCellsVersion);
+  key.add(settings_in_key(KeyedStage::cells, stages.input.scene));
   key.add(stages.keys.samples_key).add(body.profile.eta).add(body.plan.cell);
   key.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
   if (medium_inside != StageKey{}) key.add(medium_inside);
