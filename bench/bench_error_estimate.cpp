@@ -88,7 +88,7 @@ Row measure(std::size_t index, const Options& options) {
   Row row{index, random_pair(index, OPALINE_SCENES_DIR), 0, 0, 0, {}, {}};
   const std::string name = fmt::format("{}/pair-{:03}", options.folder, index);
   write_file(name + ".json", row.pair.json);
-  Scene scene = load_scene(name + ".json");
+  Scene scene = load_scene(name + ".json", std::vector<std::string>{"settings.method=hierarchical"});
   for (Shape& shape : scene.shapes) shape.reflectance = {};  // errors are those of translucent surfaces
   Session session;
   session.edit(scene);

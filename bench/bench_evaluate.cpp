@@ -145,7 +145,7 @@ void print_ratio(const Ladder& classic, const Ladder& dual, double mean) {
 }
 
 Scene with_settings(const char* file, std::size_t samples, ProfileKind profile) {
-  Scene scene = load_scene(file);
+  Scene scene = load_scene(file, std::vector<std::string>{"settings.method=hierarchical"});
   scene.settings.samples = samples;
   for (Medium& medium : scene.media) medium.profile = profile;
   return scene;

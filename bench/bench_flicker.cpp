@@ -79,7 +79,7 @@ int main(int argc, char** argv) try {
     fmt::print(stderr, "usage: bench_flicker SCENE NAME [PIXELS [FRAMES]]\n");
     return 2;
   }
-  Scene scene = load_scene(argv[1]);
+  Scene scene = load_scene(argv[1], std::vector<std::string>{"settings.method=hierarchical"});
   const std::string name = argv[2];
   const int pixels = argc > 3 ? std::atoi(argv[3]) : 256, frames = argc > 4 ? std::atoi(argv[4]) : 7;
   scene.film.resolution = {pixels, pixels};

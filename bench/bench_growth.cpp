@@ -80,7 +80,7 @@ int main(int argc, char** argv) try {
     return 2;
   }
   std::vector<std::size_t> samples{17000, 150000, 1000000};
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides{"settings.method=hierarchical"};  // unless an argument names another
   for (int i = 2; i < argc; ++i)
     if (argv[i] == std::string_view("--long"))
       samples.push_back(10000000);

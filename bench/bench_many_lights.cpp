@@ -97,7 +97,9 @@ void print_errors(const Scene& scene, const Picture& drawn) {
 int main(int argc, char** argv) try {
   if (argc < 2) throw std::runtime_error("usage: bench_many_lights SCENE [KEY=VALUE...]");
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
-  const Scene scene = load_scene(argv[1], std::vector<std::string>(argv + 2, argv + argc));
+  std::vector<std::string> overrides{"settings.method=hierarchical"};  // unless an argument names another
+  overrides.insert(overrides.end(), argv + 2, argv + argc);
+  const Scene scene = load_scene(argv[1], overrides);
   Session loaded;
   loaded.edit(scene);
   std::array<std::vector<double>, kCounts.size()> seconds, ratios;

@@ -212,7 +212,7 @@ int main(int argc, char** argv) try {
   }
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   std::size_t cache_samples = 1000000;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides{"settings.method=hierarchical"};  // unless an argument names another
   for (const std::string argument : std::span(argv + 2, argv + argc))
     if (argument.find('=') != std::string::npos)
       overrides.push_back(argument);

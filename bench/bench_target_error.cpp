@@ -73,7 +73,8 @@ std::vector<NamedScene> scenes_of(int argc, char** argv, const std::string& fold
   if (argc < 3) return calibration_scenes(folder);
   std::vector<NamedScene> scenes;
   for (int i = 2; i < argc; ++i) {
-    const std::vector<std::string> small{"film.samples_per_pixel=1", "film.filter=box"};
+    const std::vector<std::string> small{"settings.method=hierarchical", "film.samples_per_pixel=1",
+                                         "film.filter=box"};
     scenes.push_back({std::filesystem::path(argv[i]).stem().string(), load_scene(argv[i], small)});
     for (Shape& shape : scenes.back().scene.shapes) shape.reflectance = {};
   }

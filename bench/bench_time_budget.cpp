@@ -106,7 +106,8 @@ std::vector<NamedScene> scenes_of(int argc, char** argv, const std::string& fold
   std::vector<NamedScene> scenes;
   if (argc < 3) scenes = calibration_scenes(folder);
   for (int i = 2; i < argc; ++i)
-    scenes.push_back({std::filesystem::path(argv[i]).stem().string(), load_scene(argv[i])});
+    scenes.push_back({std::filesystem::path(argv[i]).stem().string(),
+                      load_scene(argv[i], std::vector<std::string>{"settings.method=hierarchical"})});
   for (NamedScene& named : scenes) {
     named.scene.film.resolution = {256, 256};
     named.scene.film.samples_per_pixel = 1;

@@ -160,6 +160,8 @@ BenchScene open_bench_scene(const BenchArguments& arguments, const std::string& 
   scene.overrides.insert(scene.overrides.end(), more.begin(), more.end());
   scene.scene = load_scene(file, scene.overrides);
   // Before the user's overrides, which win.
+  if (scene.scene.settings.method == Method::automatic)
+    scene.overrides.insert(scene.overrides.begin(), "settings.method=hierarchical");  // whose settings vary
   if (arguments.quick) scene.overrides.insert(scene.overrides.begin(), quick_resolution(scene.scene.film));
   // Half precision would round them to 0.05 %.
   scene.overrides.emplace_back("film.pixel_type=float");

@@ -133,10 +133,18 @@ TangentFrame level_frame(const Vec3f& normal) {
   return {tangent, cross(normal, tangent)};
 }
 
+/// True if the method varies the medium inside the body of this shape.
+bool follows_textures_of(const Scene& scene, const World& world, std::size_t shape) {
+  bool is_closed = true;
+  for (std::size_t m = 0; m < scene.shapes.size(); ++m)
+    if (m == shape || are_one_body(scene.shapes[m], scene.shapes[shape]))
+      is_closed = is_closed && world.reports[m].open_edges == 0;
+  return follows_textures_inside(scene.settings.method, is_closed);
+}
+
 }  // namespace
 
 SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world_(world) {
-  const bool is_followed = follows_textures_inside(scene.settings.method);
   for (std::size_t m = 0; m < scene.shapes.size(); ++m) {
     const Shape& shape = scene.shapes[m];
     OfMesh& own = of_mesh_.emplace_back();
@@ -144,9 +152,10 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
     own.heights = pointer_to(shape.bump_map);
     if (shape.medium) {
       const Medium& medium = scene.media[*shape.medium];
+      const bool is_followed = varies_inside(medium) && follows_textures_of(scene, world, m);
       const bool is_inside = is_followed && has_color_inside(medium);
       (is_inside ? own.color_inside : own.tint) = pointer_to(medium.tint_texture);
-      if (is_followed && varies_inside(medium)) own.radius_inside = pointer_to(medium.radius_texture);
+      if (is_followed) own.radius_inside = pointer_to(medium.radius_texture);
       own.factor = medium.tint;
       if (is_partly_opaque(medium)) {
         own.partly_opaque = &medium;
@@ -286,7 +295,7 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
     return uses_vertex_colors(scene, scene.shapes[m], world.meshes[m]);
   };
   const bool has_texture =
-      medium.tint_texture && !(has_color_inside(medium) && follows_textures_inside(scene.settings.method));
+      medium.tint_texture && !(has_color_inside(medium) && follows_textures_of(scene, world, meshes.front()));
   const bool has_tint = medium.tint != Rgb(1) || has_texture || medium.weight_texture ||
                         std::ranges::any_of(meshes, has_colors);
   if (medium.texture_mix == TextureMix::post || !has_tint) return {};

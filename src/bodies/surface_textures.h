@@ -87,8 +87,8 @@ inline const Texture* pointer_to(const std::optional<Texture>& texture) {
   return texture ? &*texture : nullptr;
 }
 
-/// True if textures of a medium vary it inside the body (SubsurfaceMethod::follows_textures_inside).
-bool follows_textures_inside(Method method);  // methods.cpp
+/// SubsurfaceMethod::follows_textures_inside.
+bool follows_textures_inside(Method method, bool is_closed);  // methods.cpp
 
 /// True if vertex colours multiply the colour of the shape.
 bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh);

@@ -78,8 +78,8 @@ struct Summary {
   std::size_t peak_memory = 0;  ///< bytes
   std::size_t samples = 0, queries = 0;
   std::vector<LightNoise> noise;
-  double estimated_error = 0;         ///< estimated_relative_error of `hierarchical`; 0: none
-  std::optional<double> model_error;  ///< expected_model_error
+  double estimated_error = 0;               ///< estimated_relative_error of `hierarchical`; 0: none
+  std::optional<double> model_error;        ///< expected_model_error
   std::vector<std::string> unknown_models;  ///< bodies_of_unknown_error
   KnownErrors errors;
   std::optional<SpentBudget> budget;

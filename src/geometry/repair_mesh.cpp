@@ -40,7 +40,7 @@ class HoleFiller {
     std::vector<Halfedge> borders;
     pmp::extract_boundary_cycles(mesh_, std::back_inserter(borders));
     if (which == FillHoles::if_small && !are_small(borders)) return {};
-    for (const Halfedge border : borders) fill(border);
+    for (const Halfedge border : borders) fill(border, which);
     if (which == FillHoles::if_small && !result_.unfilled.empty()) return {};
     return std::move(result_);
   }
@@ -84,7 +84,7 @@ class HoleFiller {
   }
 
   bool are_small(const std::vector<Halfedge>& borders) const {
-    constexpr double kLargest = 0.01, kLargestSum = 0.03;  // fraction of the mesh's area
+    constexpr double kLargest = 0.05, kLargestSum = 0.1;  // fraction of the mesh's area
     double area = 0, sum = 0, largest = 0;
     for (const auto face : mesh_.faces()) area += mesh_.calc_face_area(face);
     for (const Halfedge border : borders) {
@@ -119,9 +119,10 @@ class HoleFiller {
     return open;
   }
 
-  void fill(Halfedge border) {
+  /// Borders along edges of several sheets are filled as well where the result must be closed.
+  void fill(Halfedge border, FillHoles which) {
     std::size_t edges = 0;
-    if (!is_hole(border, edges)) {
+    if (!is_hole(border, edges) && which == FillHoles::all) {
       result_.unfilled.push_back(edges);
       return;
     }

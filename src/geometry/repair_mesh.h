@@ -13,8 +13,8 @@ namespace opaline {
 
 using Edge = std::array<std::uint32_t, 2>;  ///< lower vertex first
 
-/// Holes to fill: none, all of them, or all of them if each has less than 1 % of the mesh's area and their sum
-/// less than 3 %. The area of a hole is bounded by its circumference: that of a circle, the largest.
+/// Holes to fill: none, all of them, or all of them if each has less than 5 % of the mesh's area and their sum
+/// less than 10 %, bounded by their circumference.
 enum class FillHoles { none, if_small, all };
 
 struct HoleFilling {

@@ -101,8 +101,9 @@ std::vector<KeyInfo> shape_rows() {
       row("shape", "slab", object, "", kFiniteNumber, "", "built-in plate"),
       row("shape", "torus", object, "", kFiniteNumber, "", "built-in torus"),
       row("shape", "fill_holes", flag, "", kFiniteNumber, "small holes of translucent shapes",
-          "with `file`: closes every hole of the mesh, or none; light leaks through an open mesh. By default, "
-          "the holes of a translucent shape are closed if each is below 1 %, and all are below 3 % of its area"),
+          "with `file`: closes every hole of the mesh, or none; light leaks through an open mesh. By "
+          "default, the holes of a translucent shape are closed if each is below 5 %, and all are below "
+          "10 % of its area"),
       row("shape", "fit_size", length, "", kFiniteNumber, "as it is in the file",
           "with `file`: scales the mesh until the largest side of its bounding box has this length, centres "
           "it on x = z = 0 and places it on y = 0, before `transform`"),

@@ -26,8 +26,8 @@ const SubsurfaceMethod& method_of(Method method) {
   return *kAll[std::size_t(method)];
 }
 
-bool follows_textures_inside(Method method) {
-  return method_of(method).follows_textures_inside();
+bool follows_textures_inside(Method method, bool is_closed) {
+  return method_of(method).follows_textures_inside(is_closed);
 }
 
 std::vector<RgbF> radiant_exitance(const Body& body, const World& world, std::span<const Vec3d> points,

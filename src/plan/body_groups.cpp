@@ -50,7 +50,9 @@ double alignment_of(const World& world, const BodyPlan& group) {
 
 /// error where a method cannot use a medium's profile
 void check_profile(const Scene& scene, const Medium& medium) {
-  if (medium.profile != ProfileKind::directional_dipole || scene.settings.method != Method::hierarchical)
+  const Method method = scene.settings.method;  // `auto` uses the profiles that a scene sets
+  if (medium.profile != ProfileKind::directional_dipole ||
+      (method != Method::hierarchical && method != Method::automatic))
     return;
   throw Error(ErrorKind::bad_input, medium.place.file, medium.place.line, medium.place.column,
               fmt::format("{}: the profile directional_dipole requires the direction of the light, but the "

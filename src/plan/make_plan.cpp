@@ -80,7 +80,7 @@ constexpr std::size_t kBytesOfBouncePlaces = 12'000'000;
 
 /// Text for a medium with textures that could vary inside a body; else empty.
 std::string medium_stage(const Medium& medium, Method method) {
-  if (varies_inside(medium) && method_of(method).follows_textures_inside())
+  if (varies_inside(medium) && method_of(method).follows_textures_inside(true))
     return "textured medium: each point inside has the medium of the nearest surface point";
   const bool has_color = medium.texture_mix == TextureMix::medium && medium.tint_texture;
   if (!has_color && !medium.radius_texture) return {};
@@ -106,8 +106,7 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
       if (std::ranges::find(used, group.method) == used.end()) used.push_back(group.method);
     }
     for (const BodyPlan& group : plan.groups)
-      if (const std::string text = medium_stage(scene.media[group.medium], scene.settings.method);
-          !text.empty())
+      if (const std::string text = medium_stage(scene.media[group.medium], group.method); !text.empty())
         plan.stages.push_back(group.name + ": " + text);
     for (const Method one : used) method_of(one).list_stages(scene, plan.stages);
   }
@@ -244,7 +243,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   for (BodyPlan& group : plan.groups) {
     // Fitted for homogeneous media.
     const bool varies = varies_inside(scene.media[group.medium]) &&
-                        method_of(scene.settings.method).follows_textures_inside();
+                        method_of(scene.settings.method).follows_textures_inside(true);
     if (is_too_thin_for_cells(group) || varies || is_too_large_for_cells(scene.settings, group))
       group.model.expected_error_of_diffusion.reset();
     group.method = scene.settings.method;

@@ -81,7 +81,7 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
   if (method_of(input.scene.settings.method).needs_samples())  // else bodies are left from another method
     for (const Body& body : input.groups)
       for (const std::uint32_t mesh : body.plan.meshes)
-        follows_light[mesh] = method_of(body.plan.method).follows_textures_inside();
+        follows_light[mesh] = method_of(body.plan.method).follows_textures_inside(true);
   std::map<std::pair<std::size_t, bool>, std::size_t> of_medium;  // the first shape
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];

@@ -10,11 +10,11 @@ bool sends_light(const Shape& shape) {
   return shape.medium.has_value() || shape.reflectance != Rgb{};
 }
 
-bool are_one_thing(const Shape& a, const Shape& b) {
+}  // namespace
+
+bool are_one_body(const Shape& a, const Shape& b) {
   return a.medium && b.medium && !a.group.empty() && a.group == b.group;
 }
-
-}  // namespace
 
 int bounces_of(const Scene& scene) {
   if (scene.lights.empty()) return 0;
@@ -22,7 +22,7 @@ int bounces_of(const Scene& scene) {
   if (scene.settings.method == Method::volume) return 0;
   const auto first = std::ranges::find_if(scene.shapes, sends_light);
   return std::any_of(first, scene.shapes.end(), [&](const Shape& other) {
-    return &other != &*first && sends_light(other) && !are_one_thing(*first, other);
+    return &other != &*first && sends_light(other) && !are_one_body(*first, other);
   });
 }
 

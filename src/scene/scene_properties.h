@@ -8,6 +8,9 @@
 
 namespace opaline {
 
+/// True if two translucent shapes share a group, and thereby samples.
+bool are_one_body(const Shape& a, const Shape& b);
+
 /// True if some of its light is reflected diffusely at its surface.
 inline bool is_partly_opaque(const Medium& medium) {
   return medium.subsurface_weight < 1 || medium.weight_texture;

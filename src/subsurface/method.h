@@ -30,8 +30,9 @@ class SubsurfaceMethod {
   /// Requirements: samples over the surface, and light transmitted into the body there.
   virtual bool needs_samples() const { return true; }
   virtual bool needs_transmitted_light() const { return true; }
-  /// True if textures of a medium vary it inside the body (TextureMix::medium), not just at the surface.
-  virtual bool follows_textures_inside() const { return false; }
+  /// True if textures of a medium vary it inside a body, closed or open (TextureMix::medium), not just at its
+  /// surface.
+  virtual bool follows_textures_inside(bool /*is_closed*/) const { return false; }
   /// True if light spreads by the radial profile of the medium, or its total reflectance alone is used.
   virtual bool uses_radial_profile() const { return true; }
   /// False if light leaves where it enters.

@@ -2,6 +2,7 @@
 #include "volume/diffusion_solver.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 
@@ -21,6 +22,10 @@ class ConjugateGradients {
     const bool from_zero = x_.size() != count_;
     if (from_zero) x_.assign(count_, {});
     residual_ = problem.source;
+    choose_scale();
+    for (std::vector<Channels>* values : {&residual_, &x_})
+      for (Channels& value : *values)
+        for (std::size_t c = 0; c < 4; ++c) value.c[c] *= scale_.c[c];
     inverse_.resize(count_);
     direction_.resize(count_);
     product_.resize(count_);
@@ -90,17 +95,29 @@ class ConjugateGradients {
       for (std::size_t c = 0; c < 4; ++c) sums[c] += double(problem_.loss[i].c[c]) * double(x_[i].c[c]);
     });
     const Sums came = sum([&](std::size_t i, Sums& sums) {
-      for (std::size_t c = 0; c < 4; ++c) sums[c] += double(problem_.source[i].c[c]);
+      for (std::size_t c = 0; c < 4; ++c) sums[c] += double(problem_.source[i].c[c]) * double(scale_.c[c]);
     });
     Channels scale;
     for (std::size_t c = 0; c < 4; ++c) scale.c[c] = lost[c] > 0 ? float(came[c] / lost[c]) : 1;
     sum([&](std::size_t i, Sums&) {
-      for (std::size_t c = 0; c < 4; ++c) x_[i].c[c] *= scale.c[c];
+      for (std::size_t c = 0; c < 4; ++c) x_[i].c[c] = x_[i].c[c] * scale.c[c] / scale_.c[c];
     });
     return std::move(x_);
   }
 
  private:
+  // Powers of two: exact, and products of very large or small values stay within the range of floats.
+  void choose_scale() {
+    Channels largest;
+    for (const Channels& source : problem_.source)
+      for (std::size_t c = 0; c < 4; ++c) largest.c[c] = std::max(largest.c[c], std::abs(source.c[c]));
+    for (std::size_t c = 0; c < 4; ++c) {
+      int exponent = 0;
+      std::frexp(largest.c[c], &exponent);
+      scale_.c[c] = std::ldexp(1.f, -std::clamp(exponent, -120, 120));
+    }
+  }
+
   // A variable diffusivity is included in the conductances; a constant one is 1 here.
   void weigh_links() {
     const DiffusionGrid& grid = problem_.grid;
@@ -164,6 +181,7 @@ class ConjugateGradients {
   const DiffusionProblem& problem_;
   std::size_t count_;
   Channels diffusivity_;
+  Channels scale_;                      // factors of sources and fluences
   std::vector<Channels> conductances_;  // one per link of the grid, or none
   std::vector<Channels> x_, residual_, inverse_, direction_, product_;
   Sums squared_{}, source_{};  // norms of the residual and of the source

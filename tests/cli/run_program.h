@@ -162,7 +162,7 @@ struct SceneFolder : ScratchFolder {
   "lights": [{"name": "key", "type": "point", "position": [20, 30, 40], "intensity": 1000}],
   "camera": {"position": [0, 0, 50]},
   "film": {"resolution": [32, 32]},
-  "settings": {"samples": 500}
+  "settings": {"method": "hierarchical", "samples": 500}
 }
 )");
   }

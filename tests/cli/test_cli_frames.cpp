@@ -24,7 +24,7 @@ struct Shot : SceneFolder {
               "position": {"keyed": {"1": [20, 30, 40], "6": [0, 30, 50]}, "between": "spline"}}],
   "camera": {"position": {"keyed": {"1": [0, 0, 50], "6": [10, 0, 50]}}},
   "film": {"resolution": [24, 24]},
-  "settings": {"samples": 800}
+  "settings": {"method": "hierarchical", "samples": 800}
 }
 )");
   }

@@ -52,6 +52,7 @@ TEST_P(CliGoldens, AreAsTheyWere) {
                                  "--spp",        "4",
                                  "--resolution", "64x48",
                                  "--layers",     "none",
+                                 "--method",     "hierarchical",
                                  "--set",        "settings.samples=2000"};
   words.insert(words.end(), golden.options.begin(), golden.options.end());
   const Outcome outcome = run_program(words);

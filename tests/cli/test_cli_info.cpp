@@ -60,7 +60,7 @@ TEST(CliInfo, ModelErrorOfPlates) {
 // choice to the reader, or a named profile is told as chosen.
 TEST(CliInfo, ModelAndItsError) {
   const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
-  const Outcome text = run_program({"info", plate});
+  const Outcome text = run_program({"info", plate, "--method", "hierarchical"});
   for (const char* part : {"profile multipole: flat, thickness 2 mm = ", "expected model error ",
                            "; --method volume_diffusion: ", " % (both without re-entry)"})
     EXPECT_TRUE(contains(text.out, part)) << "no \"" << part << "\" in:\n" << text.out;
@@ -91,8 +91,9 @@ TEST(CliInfo, FewerSamplesWhereBodiesAreMany) {
     for (int i = 0; i < bodies; ++i)
       shapes += (i > 0 ? "," : "") + std::string(R"({"box":{"low":[)") + std::to_string(3 * i) +
                 R"(,0,0],"high":[)" + std::to_string(3 * i + 2) + R"(,2,2]},"medium":"marble"})";
-    const std::vector<std::string> line{"info",  folder.scene, "--set", "shapes=[" + shapes + "]",
-                                        "--set", "settings={}"};
+    const std::vector<std::string> line{"info",  folder.scene,
+                                        "--set", "shapes=[" + shapes + "]",
+                                        "--set", "settings={\"method\": \"hierarchical\"}"};
     return run_program(line).out;
   };
   EXPECT_TRUE(contains(plan_of(2), "10,000 samples (the minimum)")) << plan_of(2);

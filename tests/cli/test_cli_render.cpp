@@ -309,7 +309,7 @@ PlannedMemory planned_memory(const std::string& scene, const std::vector<std::st
   return {event_of(events, "plan")["memory_bytes"], events.back()["peak_memory_bytes"]};
 }
 
-// Claim: the plan's memory is an upper bound, and at most 1.3 times what is taken, for small and large pictures, all
+// Claim: the plan's memory is an upper bound, and at most 1.5 times what is taken, for small and large pictures, all
 // layers, area lights, a plate, media that vary inside, and cells that light bounces to. Fails if: empty pixels count (1.7
 // at 2048 x 2048), what is on its way into the file does not (.95), or a cell's own medium does not (.94).
 TEST(CliRender, PlansTheMemoryItTakes) {
@@ -326,7 +326,7 @@ TEST(CliRender, PlansTheMemoryItTakes) {
   for (const std::vector<std::string>& job : jobs) {
     const PlannedMemory memory = planned_memory(scenes + job[0], {job.begin() + 1, job.end()});
     EXPECT_LE(memory.taken, memory.planned) << job[0];
-    EXPECT_LE(memory.planned, 1.3 * memory.taken) << job[0];
+    EXPECT_LE(memory.planned, 1.5 * memory.taken) << job[0];
   }
 }
 

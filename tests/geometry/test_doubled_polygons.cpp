@@ -42,7 +42,7 @@ CheckedMesh load_polygons(const std::string& extension, const std::vector<Vec3d>
 
 /// The polygon from another corner on, and the other way round.
 FaceCorners started_at(FaceCorners polygon, std::size_t corner, bool is_reversed) {
-  std::ranges::rotate(polygon, polygon.begin() + std::ptrdiff_t(corner));
+  std::rotate(polygon.begin(), polygon.begin() + std::ptrdiff_t(corner), polygon.end());
   if (is_reversed) std::ranges::reverse(polygon);
   return polygon;
 }

@@ -13,7 +13,8 @@ namespace opaline::test {
 namespace {
 
 Scene bunny(std::size_t samples) {
-  Scene scene = load_scene(std::string(OPALINE_SCENES_DIR) + "/bunny-marble.json");
+  Scene scene = load_scene(std::string(OPALINE_SCENES_DIR) + "/bunny-marble.json",
+                           std::vector<std::string>{"settings.method=hierarchical"});
   scene.film.half = false;
   scene.settings.samples = samples;
   scene.settings.max_samples = 10'000'000;

@@ -18,8 +18,9 @@ std::string scene_file(const std::string& name) {
 }
 
 Image picture_of_file(const std::string& name, const std::vector<std::string>& more) {
-  std::vector<std::string> overrides{"film.resolution=[96,96]", "film.samples_per_pixel=1", "film.filter=box",
-                                     "film.pixel_type=float", "settings.tolerance=0.001"};
+  std::vector<std::string> overrides{"settings.method=hierarchical", "film.resolution=[96,96]",
+                                     "film.samples_per_pixel=1",     "film.filter=box",
+                                     "film.pixel_type=float",        "settings.tolerance=0.001"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return Prepared(load_scene(scene_file(name), overrides)).picture();
 }

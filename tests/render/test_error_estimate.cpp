@@ -13,8 +13,8 @@ namespace opaline {
 namespace {
 
 RenderResult estimated(const std::string& name, const std::vector<std::string>& more) {
-  std::vector<std::string> overrides{"film.resolution=[32,32]", "film.samples_per_pixel=1",
-                                     "film.filter=box"};
+  std::vector<std::string> overrides{"settings.method=hierarchical", "film.resolution=[32,32]",
+                                     "film.samples_per_pixel=1", "film.filter=box"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   const Scene scene = load_scene(std::string(OPALINE_SCENES_DIR) + "/" + name + ".json", overrides);
   Session session;

@@ -30,7 +30,7 @@ const std::string kScene = R"({
              {"name": "panel", "type": "quad", "corner": [-20, 90, 30], "u": [40, 0, 0], "v": [0, 0, 20], "radiance": 5}],
   "camera": {"position": [0, 30, 120], "look_at": [0, 8, 0], "field_of_view": 32},
   "film": {"resolution": [18, 12], "pixel_type": "float"},
-  "settings": {"samples": 150, "light_samples": 2}
+  "settings": {"method": "hierarchical", "samples": 150, "light_samples": 2}
 })";
 
 const std::string kSphereLight = R"({"type": "sphere", "center": [0, 90, 20], "radius": 9, "radiance": 20})";

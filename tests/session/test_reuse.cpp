@@ -381,7 +381,7 @@ TEST(Reuse, LightsAddedWithoutSamples) {
 // rendered, for their meshes no longer exist (an invalid write).
 TEST(Reuse, LastTranslucentShapeGone) {
   Scene scene = balls_that_bounce();
-  std::ranges::rotate(scene.shapes, scene.shapes.begin() + 2);
+  std::rotate(scene.shapes.begin(), scene.shapes.begin() + 2, scene.shapes.end());
   Session session;
   picture_of(session, scene);
   EXPECT_EQ(session.bodies().size(), 2u);

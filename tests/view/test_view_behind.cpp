@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is worked out behind the final picture: the trade, whose points can be taken, and references on the wipe.
+#include "input/load_scene.h"
 #include "quality/target_error.h"
 #include "view_page.h"
 
@@ -119,6 +120,8 @@ TEST_F(LongViewBehind, AReferenceRefines) {
 // the way, or it is chosen again for the scene that has them.
 TEST(ViewBehind, SettingsAreChosenForAnError) {
   const ViewFolder folder;
+  put_bytes(folder.scene, merged_scene(bytes_of(folder.scene), folder.scene,
+                                       std::vector<std::string>{"settings.method=hierarchical"}));
   const RunningView view(folder.scene);
   ViewClient page(view);
   ASSERT_TRUE(page.read_final());

@@ -18,6 +18,8 @@ struct FramesFolder : ViewFolder {
     std::string text = bytes_of(scene);
     const std::string still = "[-15, 10, 0]";
     text.replace(text.find(still), still.size(), R"({"keyed": {"2": [-15, 10, 0], "8": [-15, 22, 4]}})");
+    const std::string setting = "\"light_samples\": 4";
+    text.replace(text.find(setting), setting.size(), setting + ", \"method\": \"hierarchical\"");
     put_bytes(scene, text);
   }
 

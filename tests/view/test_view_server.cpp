@@ -164,7 +164,7 @@ TEST(ViewServer, LayersAndReports) {
   std::vector<std::string> stages;
   for (const Json& cost : report.at("costs")) stages.push_back(cost.at("stage"));
   EXPECT_EQ(stages,
-            (std::vector<std::string>{"rays", "sampling", "irradiance", "octree", "bounces", "shading"}));
+            (std::vector<std::string>{"rays", "sampling", "irradiance", "diffusion", "bounces", "shading"}));
   EXPECT_EQ(page.texts.at("plan").at("groups").size(), 2u);
   EXPECT_GT(page.texts.at("schema").at("rows").size(), 50u);
   page.set({{"camera.field_of_view", 20}});

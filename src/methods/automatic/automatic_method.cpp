@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -31,8 +32,7 @@ MethodPlan planned_by(Method method, const PlanningInput& input, BodyPlan body) 
 std::string named_by_scene(const Scene& scene, const BodyPlan& body) {
   const Medium& medium = scene.media[body.medium];
   if (varies_inside(medium)) return {};
-  if (medium.profile && medium.profile != ProfileKind::directional_dipole)
-    return "the scene sets its profile";
+  if (medium.profile) return "the scene sets its profile";
   if (scene.settings.evaluator != EvaluatorKind::automatic) return "the scene sets its evaluator";
   return {};
 }
@@ -61,6 +61,14 @@ void AutomaticMethod::plan(const PlanningInput& input, BodyPlan& body,
   if (!reason.empty()) chosen.body.reason_against_method = std::move(reason);
   body = std::move(chosen.body);
   warnings.insert(warnings.end(), chosen.warnings.begin(), chosen.warnings.end());
+}
+
+double AutomaticMethod::samples_with_shadow_rays(const Plan& plan) const {
+  double samples = 0;
+  for (const Method method : {Method::volume_diffusion, Method::hierarchical})
+    if (std::ranges::find(plan.groups, method, &BodyPlan::method) != plan.groups.end())
+      samples = std::max(samples, method_of(method).samples_with_shadow_rays(plan));
+  return samples;
 }
 
 }  // namespace opaline

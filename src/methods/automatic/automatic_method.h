@@ -12,6 +12,7 @@ namespace opaline {
 class AutomaticMethod : public VolumeDiffusionMethod {
  public:
   void plan(const PlanningInput& input, BodyPlan& body, std::vector<std::string>& warnings) const override;
+  double samples_with_shadow_rays(const Plan& plan) const override;
 };
 
 }  // namespace opaline

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/hierarchical/light_distance.h"
 
+#include <fmt/format.h>
+
 #include <array>
 
 #include "lights/light.h"
@@ -83,6 +85,19 @@ std::optional<double> near_light_distance(const Light& light, const World& world
   double nearest = widest;
   for (const std::uint32_t mesh : meshes) nearest = nearest_of_mesh(*middle, world.meshes[mesh], nearest);
   return nearest < widest ? std::optional(nearest * world.unit) : std::nullopt;
+}
+
+void warn_of_near_lights(const Scene& scene, const World& world, const BodyPlan& body,
+                         std::vector<std::string>& warnings) {
+  for (const Light& light : scene.lights) {
+    if (emission(light) == Rgb{}) continue;
+    const std::optional<double> distance = near_light_distance(light, world, body.meshes, body.spacing);
+    if (!distance) continue;
+    warnings.push_back(fmt::format(
+        "{}: the light {} is {:.3g} mm from the surface, closer than the sample spacing of {:.3g} mm, so the "
+        "samples miss part of its light; move the light away or reduce settings.sample_spacing",
+        body.name, light.name, *distance < 1e-3 * body.spacing ? 0 : *distance, body.spacing));
+  }
 }
 
 }  // namespace opaline

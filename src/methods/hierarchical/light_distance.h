@@ -5,7 +5,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "bodies/plan.h"
 #include "geometry/world.h"
 #include "opaline/scene.h"
 
@@ -18,5 +21,9 @@ namespace opaline {
 /// in    limit: > 0, mm
 std::optional<double> near_light_distance(const Light& light, const World& world,
                                           std::span<const std::uint32_t> meshes, double limit);
+
+/// Adds a warning for each light closer to a body than its planned sample spacing.
+void warn_of_near_lights(const Scene& scene, const World& world, const BodyPlan& body,
+                         std::vector<std::string>& warnings);
 
 }  // namespace opaline

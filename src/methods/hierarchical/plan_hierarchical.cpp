@@ -26,19 +26,6 @@ void warn_of_thin_body(const BodyPlan& body, std::vector<std::string>& warnings)
       body.name, thickness, body.spacing, body.area / (thickness * thickness)));
 }
 
-void warn_of_near_lights(const Scene& scene, const World& world, const BodyPlan& body,
-                         std::vector<std::string>& warnings) {
-  for (const Light& light : scene.lights) {
-    if (emission(light) == Rgb{}) continue;
-    const std::optional<double> distance = near_light_distance(light, world, body.meshes, body.spacing);
-    if (!distance) continue;
-    warnings.push_back(fmt::format(
-        "{}: the light {} is {:.3g} mm from the surface, closer than the sample spacing of {:.3g} mm, so the "
-        "samples miss part of its light; move the light away or reduce settings.sample_spacing",
-        body.name, light.name, *distance < 1e-3 * body.spacing ? 0 : *distance, body.spacing));
-  }
-}
-
 std::string evaluation_stage(const Settings& settings) {
   const std::string promise = fmt::format("error below {:.3g} % of the exact sum", 100 * settings.tolerance);
   switch (settings.evaluator) {

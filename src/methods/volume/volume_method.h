@@ -9,7 +9,7 @@ namespace opaline {
 class VolumeMethod : public SubsurfaceMethod {
  public:
   bool needs_transmitted_light() const override { return false; }
-  bool follows_textures_inside() const override { return true; }
+  bool follows_textures_inside(bool /*is_closed*/) const override { return true; }
   bool uses_radial_profile() const override { return false; }
   bool has_model() const override { return false; }
   bool supports_bounces() const override { return false; }

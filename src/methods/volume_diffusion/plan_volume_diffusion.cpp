@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "diffusion/diffuse_profile.h"
+#include "methods/hierarchical/light_distance.h"
 #include "methods/volume_diffusion/volume_diffusion_method.h"
 #include "scene/scene_properties.h"
 #include "subsurface/plan_samples.h"
@@ -68,6 +69,7 @@ void VolumeDiffusionMethod::plan(const PlanningInput& input, BodyPlan& body,
   }
   choose_cells(input.scene, input.world, body, warnings);
   choose_cut(input.scene.settings, input.fewest_samples, body, warnings);
+  warn_of_near_lights(input.scene, input.world, body, warnings);
 }
 
 BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyPlan& body) const {

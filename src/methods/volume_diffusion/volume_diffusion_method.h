@@ -8,7 +8,7 @@ namespace opaline {
 
 class VolumeDiffusionMethod : public SubsurfaceMethod {
  public:
-  bool follows_textures_inside() const override { return true; }
+  bool follows_textures_inside(bool is_closed) const override { return is_closed; }
   bool uses_radial_profile() const override { return false; }
   std::optional<double> expected_error(const BodyModel& model) const override {
     return model.expected_error_of_diffusion;
