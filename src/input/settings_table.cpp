@@ -192,7 +192,7 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::method>(
           "method", choice, "", kFiniteNumber, "", {surfaces, view_surfaces},
           "`\"auto\"`: for each body `\"volume_diffusion\"`, or `\"hierarchical\"` if its mesh is open, its "
-          "profile or the evaluator is set, or cells would cost far more; `\"hierarchical\"`: BSSRDF with a "
+          "profile or the evaluator is set, or it is too large for cells; `\"hierarchical\"`: BSSRDF with a "
           "radial profile, by hierarchical evaluation; `\"lambert\"`: "
           "diffuse reflection, usually fastest; `\"direct\"`: the same BSSRDF by unbiased Monte Carlo "
           "sampling, slow and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the "

@@ -25,6 +25,17 @@ void follow(const RayScene& rays, const Vec3d& from, const Vec3d& direction, dou
   }
 }
 
+/// True if the box of one of the meshes meets that of any other mesh of the world.
+bool any_box_meets(const World& world, std::span<const std::uint32_t> meshes) {
+  for (const std::uint32_t m : meshes)
+    for (std::size_t other = 0; other < world.boxes.size(); ++other) {
+      const Bounds &a = world.boxes[m], &b = world.boxes[other];
+      if (other != m && max_component(component_max(a.low, b.low) - component_min(a.high, b.high)) <= 0)
+        return true;
+    }
+  return false;
+}
+
 bool leaves(const Hit& hit, const Vec3d& direction) {
   return dot(Vec3d(hit.edges_cross), direction) > 0;
 }
@@ -42,7 +53,7 @@ struct OuterSurface::Windings {
 OuterSurface::OuterSurface(const RayScene& rays, const World& world, std::span<const std::uint32_t> meshes,
                            double least_gap)
     : rays_(rays), least_gap_(least_gap) {
-  if (boxes_meet(world, meshes)) lines_.emplace(rays, meshes);
+  if (any_box_meets(world, meshes)) lines_.emplace(rays, meshes);
   for (const std::uint32_t m : meshes) {
     if (m >= is_body_.size()) is_body_.resize(m + 1);
     is_body_[m] = true;
@@ -81,14 +92,21 @@ OuterSurface::Windings OuterSurface::windings_at(const BoundaryPiece& piece, con
 
 /// True if another sheet of the body faces it from nearby, so that outgoing light enters again.
 bool OuterSurface::touches(const BoundaryPiece& piece, const Vec3d& outward) const {
+  const Vec3d from = Vec3d(piece.middle) + outward * offset(piece);
+  const auto faces_it = [&](const Hit& hit) {
+    return std::abs(dot(normalized(Vec3d(hit.edges_cross)), outward)) > -kFacing;
+  };
+  if (lines_) {
+    std::vector<Hit> hits;
+    lines_->find(Ray(Vec3f(from), Vec3f(outward), float(least_gap_)), hits);
+    return std::ranges::any_of(hits, faces_it);
+  }
   bool found = false;
-  follow(rays_, Vec3d(piece.middle) + outward * offset(piece), outward, least_gap_,
-         [&](const TracedRay& traced) {
-           if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
-           const double cosine = std::abs(dot(normalized(Vec3d(traced.hit.edges_cross)), outward));
-           found = cosine > -kFacing;
-           return !found;
-         });
+  follow(rays_, from, outward, least_gap_, [&](const TracedRay& traced) {
+    if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
+    found = faces_it(traced.hit);
+    return !found;
+  });
   return found;
 }
 

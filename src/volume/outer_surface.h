@@ -53,7 +53,7 @@ class OuterSurface {
   double offset(const BoundaryPiece& piece) const { return double(rays_.offset(piece.mesh, piece.middle)); }
 
   const RayScene& rays_;
-  std::optional<LineQuery> lines_;  ///< for coincident meshes, missed by rays continuing behind a hit
+  std::optional<LineQuery> lines_;  ///< if meshes may coincide: rays continuing behind a hit miss them
   std::vector<bool> is_body_;
   double least_gap_;
 };

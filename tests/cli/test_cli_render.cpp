@@ -375,21 +375,21 @@ TEST(CliRender, TellsTheModelsError) {
   const SceneFolder folder;
   const std::string plate = std::string(OPALINE_SCENES_DIR) + "/backlit-slab.json";
   const Outcome thin = run_program({"render", plate, "-o", folder.file("a.exr"), "--resolution", "32x32",
-                                    "--set", "settings.samples=2000"});
+                                    "--set", "settings.samples=2000", "--method", "hierarchical"});
   EXPECT_TRUE(contains(thin.out, "error       settings estimated ")) << thin.out;
   EXPECT_TRUE(contains(thin.out, "model about ")) << thin.out;
   EXPECT_EQ(contains(thin.err, "expected model error "), contains(thin.out, "expected model error 2"))
       << thin.err;
-  const Outcome thinner =
-      run_program({"render", plate, "-o", folder.file("a.exr"), "--resolution", "32x32", "--set",
-                   "settings.samples=2000", "--set", "shapes.slab.slab.thickness=0.5"});
+  const Outcome thinner = run_program({"render", plate, "-o", folder.file("a.exr"), "--resolution", "32x32",
+                                       "--set", "settings.samples=2000", "--method", "hierarchical", "--set",
+                                       "shapes.slab.slab.thickness=0.5"});
   EXPECT_TRUE(contains(thinner.err, "slab: expected model error ")) << thinner.err;
   const Outcome thick = run_program({"render", folder.scene, "-o", folder.file("a.exr")});
   EXPECT_TRUE(contains(thick.out, "model about ")) << thick.out;
   EXPECT_EQ(thick.err, "");
-  const Outcome unknown =
-      run_program({"render", plate, "-o", folder.file("a.exr"), "--resolution", "32x32", "--set",
-                   "settings.samples=2000", "--set", "media.jade.profile=better_dipole"});
+  const Outcome unknown = run_program({"render", plate, "-o", folder.file("a.exr"), "--resolution", "32x32",
+                                       "--set", "settings.samples=2000", "--method", "hierarchical", "--set",
+                                       "media.jade.profile=better_dipole"});
   EXPECT_TRUE(contains(unknown.out, "model: unknown for slab\n")) << unknown.out;
 }
 

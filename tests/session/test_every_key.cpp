@@ -229,7 +229,7 @@ std::vector<Change> changes() {
       {"settings.laboratory.near_irradiance", "settings.laboratory.near_irradiance=samples"},
       {"settings.sample_spacing",
        "settings.sample_spacing=4",
-       {R"(settings={"sample_spacing": 6, "light_samples": 2})"}},
+       {R"(settings={"method": "hierarchical", "sample_spacing": 6, "light_samples": 2})"}},
       {"settings.samples", "settings.samples=120"},
       {"settings.max_samples", "settings.max_samples=100", {"settings.sample_spacing=1"}},
       {"settings.light_samples", "settings.light_samples=6"},

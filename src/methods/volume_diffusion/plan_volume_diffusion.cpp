@@ -27,6 +27,8 @@ std::string reason_against_cells(const Scene& scene, const World& world, const B
   for (const std::uint32_t mesh : body.meshes) open_edges += world.reports[mesh].open_edges;
   if (open_edges > 0)
     return fmt::format("its mesh is open ({} boundary edges) and encloses no volume", open_edges);
+  constexpr double kThinnest = 1e-9;  // mean free paths; conductances of thinner bodies overflow
+  if (body.thickness < kThinnest * body.smallest_mean_free_path) return "light crosses it without scattering";
   if (!varies(scene, body) && is_too_large_for_cells(scene.settings, body))
     return fmt::format(
         "it requires more than {:.2g} million cells of {:.3g} mean free paths, and its surface is flat on "
