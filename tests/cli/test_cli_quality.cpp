@@ -94,6 +94,26 @@ std::string closing_line(const std::string& out, const std::string& label) {
   return at == std::string::npos ? "" : out.substr(at + 1, out.find('\n', at + 1) - at - 1);
 }
 
+// Claim: --target-error replaces `auto` by the method of all bodies, --time-budget and --verify by hierarchical; the command
+// under "repeat with" names it. Source: quality.h. Fails if: settings are chosen for `auto`, which has none of its own, or the
+// repeated image is by another method.
+TEST(CliQuality, AChoiceNamesTheMethodOfAuto) {
+  const SceneFolder folder;
+  const auto repeated = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"render", folder.scene, "-o", folder.file("a.exr"), "--method", "auto"});
+    const Outcome outcome = run_program(words);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.out.substr(std::min(outcome.out.find("repeat with"), outcome.out.size()));
+  };
+  const std::string cells = repeated({"--target-error", "9%"});
+  EXPECT_TRUE(contains(cells, "settings.method=volume_diffusion") && contains(cells, "settings.cell_size="))
+      << cells;
+  const std::string profile = repeated({"--target-error", "9%", "--set", "media.marble.profile=dipole"});
+  EXPECT_TRUE(contains(profile, "settings.method=hierarchical")) << profile;
+  const std::string budget = repeated({"--time-budget", "1s"});
+  EXPECT_TRUE(contains(budget, "settings.method=hierarchical")) << budget;
+}
+
 // Claim: the closing lines state the predicted and the measured error, the CPU of the whole table against the
 // budget, --verify not counted, and a command that makes the same pixels without a clock. Fails if: --verify
 // is counted, the start of the program is not, or a chosen setting is left out of the command.
