@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -213,6 +214,16 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
   scene.translation = asset.summary;
   scene.warnings.insert(scene.warnings.begin(), asset.warnings.begin(), asset.warnings.end());
   scene.asset_bytes = asset.bytes;
+  const auto is_of = [&](const char* part, bool is_first) {
+    return std::ranges::any_of(overrides, [&](const std::string& text) {
+      const std::size_t at = text.find(part);
+      return at < text.find('=') && (at == 0 || !is_first);
+    });
+  };
+  if (is_of(".fit_size", false) && !is_of("camera", true))
+    scene.warnings.push_back(
+        "fit_size moves and scales a mesh alone: the camera and lights of the asset stay; "
+        "--set mm_per_unit=... scales all of them");
   if (!asset.not_carried.empty()) scene.translation += "; opaline import lists all";
   forget_places(scene);
   return scene;

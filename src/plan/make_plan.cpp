@@ -100,7 +100,7 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
     plan.stages.push_back(method.light_stage(scene, lights));
     for (const BodyPlan& group : plan.groups) {
       if (!group.reason_against_method.empty())
-        plan.stages.push_back(group.name + " by a radial profile: " + group.reason_against_method);
+        plan.stages.push_back(group.name + " by hierarchical evaluation: " + group.reason_against_method);
       if (std::string text = method_of(group.method).body_stage(group); !text.empty())
         plan.stages.push_back(std::move(text));
       if (std::ranges::find(used, group.method) == used.end()) used.push_back(group.method);

@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "quality/target_error.h"
 #include "scene/names.h"
 
 namespace opaline {
-
-Scene with_named_method(const Session& session) {
-  Scene scene = session.scene();
-  if (scene.settings.method != Method::automatic) return scene;
-  const std::vector<BodyPlan>& bodies = session.plan().groups;
-  const bool is_inside = !bodies.empty() && std::ranges::all_of(bodies, [](const BodyPlan& body) {
-    return body.method == Method::volume_diffusion;
-  });
-  scene.settings.method = is_inside ? Method::volume_diffusion : Method::hierarchical;
-  return scene;
-}
 
 std::vector<std::string> chosen_overrides(const Session& session, std::size_t entry_samples) {
   if (session.scene().lights.empty()) return {};  // nothing was chosen

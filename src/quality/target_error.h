@@ -44,8 +44,8 @@ TargetError reach_error(Session& session, Scene scene, double target, Monitor* m
 /// error as Session::edit and Session::prepare
 TargetError reach_volume_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);
 
-/// The session's scene for a choice of settings. Replaces the method `auto`: by volume_diffusion if that is the
-/// method of all bodies, else by hierarchical.
+/// The session's scene for a choice of settings. Replaces the method `auto`: by volume_diffusion if its model error
+/// is known for all bodies, else by hierarchical.
 Scene with_named_method(const Session& session);
 
 /// Chosen settings, by reach_error or for a time, as for `--set`; without light_samples.

@@ -120,6 +120,14 @@ class VolumeSearch {
 
 }  // namespace
 
+Scene with_named_method(const Session& session) {
+  Scene scene = session.scene();
+  if (scene.settings.method != Method::automatic) return scene;
+  const bool is_promised = !session.plan().groups.empty() && model_error(session.plan());
+  scene.settings.method = is_promised ? Method::volume_diffusion : Method::hierarchical;
+  return scene;
+}
+
 TargetError reach_volume_error(Session& session, Scene scene, double target, Monitor* monitor) {
   VolumeSearch search(session, scene, monitor);
   TargetError result;

@@ -196,6 +196,18 @@ TEST(CliAssets, DefaultLightsAreUnseen) {
   EXPECT_GT(light / covered, .15);
 }
 
+// Claim: fit_size, which moves a mesh away from the camera and lights of its asset, is reported with the remedy; with a camera
+// of one's own it is not. Fails if: images without the mesh are silent.
+TEST(CliAssets, FitSizeLeavesTheCamera) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.glb"), asset_test::cube_asset().glb());
+  const std::vector<std::string> line{"info", folder.file("a.glb"), "--set", "shapes.0.fit_size=60"};
+  EXPECT_TRUE(contains(run_program(line).err, "--set mm_per_unit=... scales all of them"));
+  std::vector<std::string> framed = line;
+  framed.insert(framed.end(), {"--set", "camera.position=[0, 30, 200]"});
+  EXPECT_FALSE(contains(run_program(framed).err, "mm_per_unit=..."));
+}
+
 // Claim: --allow-outside lets assets name files outside of their folders, with every command that reads them; without it
 // they are refused. Fails if a command lacks the option.
 TEST(CliAssets, FilesOutsideAreAllowedOnDemand) {

@@ -393,6 +393,38 @@ TEST(CliRender, TellsTheModelsError) {
   EXPECT_TRUE(contains(unknown.out, "model: unknown for slab\n")) << unknown.out;
 }
 
+// Claim: a shape inside a translucent body, opaque or of another medium, is reported by methods that ignore it there, and not
+// by `volume`; neither a floor in the plane of its lower face nor a body that touches it is. Source: shapes_inside.h. Fails if:
+// shapes within a body are silent.
+TEST(CliRender, ShapesInsideBodiesAreReported) {
+  const ScratchFolder folder;
+  const auto warning_of = [&](const std::string& shape, const std::string& method) {
+    put_bytes(folder.file("a.json"),
+              R"({"media": {"m": {"preset": "marble"}, "n": {"preset": "skin1"}}, "shapes": [
+        {"name": "cube", "box": {"low": [0, 0, 0], "high": [20, 20, 20]}, "medium": "m"}, )" +
+                  shape + R"(], "lights": [{"type": "point", "position": [30, 60, 60], "intensity": 9000}],
+        "camera": {"position": [10, 30, 80], "look_at": [10, 8, 0]}, "film": {"resolution": [16, 16]},
+        "settings": {"bounces": 0, "samples": 500, "until_error": 0.5}})");
+    const std::string err =
+        run_program({"render", folder.file("a.json"), "-o", folder.file("a.exr"), "--method", method}).err;
+    return contains(err, "cube: the shape 'b' lies inside");
+  };
+  const std::string inside = R"({"name": "b", "box": {"low": [5, 5, 5], "high": [15, 15, 15]}})",
+                    overlapping =
+                        R"({"name": "b", "sphere": {"center": [20, 10, 10], "radius": 8}, "medium": "n"})",
+                    floor =
+                        R"({"name": "b", "quad": {"corner": [-9, 0, -9], "u": [0, 0, 40], "v": [40, 0, 0]}})",
+                    beside =
+                        R"({"name": "b", "box": {"low": [20, 2, 2], "high": [30, 9, 9]}, "medium": "n"})";
+  for (const char* method : {"auto", "hierarchical"}) {
+    EXPECT_TRUE(warning_of(inside, method)) << method;
+    EXPECT_TRUE(warning_of(overlapping, method)) << method;
+    EXPECT_FALSE(warning_of(floor, method)) << method;
+    EXPECT_FALSE(warning_of(beside, method)) << method;
+  }
+  EXPECT_FALSE(warning_of(inside, "volume"));
+}
+
 // Claim: the exposure brightens the PNG alone. Source: scene.h. Fails if: it is applied to the EXR, or not at
 // all.
 TEST(CliRender, ExposureIsForThePng) {

@@ -33,7 +33,7 @@ TEST(LargeBodies, AreLeftToTheTree) {
   EXPECT_TRUE(groups[0].model.expected_error_of_diffusion);
   EXPECT_FALSE(groups[1].model.expected_error_of_diffusion);
   EXPECT_TRUE(std::ranges::any_of(session.plan().stages, [](const std::string& stage) {
-    return stage.starts_with("right by a radial profile");
+    return stage.starts_with("right by hierarchical evaluation");
   }));
   const Image trees = cold_picture(with_large_ball(Method::hierarchical));
   Scene cells_alone = two_balls();

@@ -103,9 +103,10 @@ double VolumeDiffusionMethod::seconds(const Scene& scene, const BodyPlan& body,
 }
 
 std::string VolumeDiffusionMethod::body_stage(const BodyPlan& body) const {
-  return fmt::format("diffusion: about {:.2g} cells in {}, {:.3g} mm at the surface ({:.3g} mean free paths)",
-                     expected_cells(body.area, body.thickness, body.cell), body.name, body.cell,
-                     body.cell / body.smallest_mean_free_path);
+  return fmt::format(
+      "{} by volume_diffusion: about {:.2g} cells, {:.3g} mm at the surface ({:.3g} mean free paths)",
+      body.name, expected_cells(body.area, body.thickness, body.cell), body.cell,
+      body.cell / body.smallest_mean_free_path);
 }
 
 }  // namespace opaline

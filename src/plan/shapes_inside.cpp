@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "plan/shapes_inside.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene/names.h"
+#include "subsurface/method.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t kTested = 64;  // vertices of a shape
+constexpr int kMostSheets = 64;
+constexpr std::size_t kMostPairs = 1'000'000;               // bodies times shapes
+const Vec3d kDirection = normalized(Vec3d{.31, .87, .39});  // along no axis
+
+bool is_of(const BodyPlan& body, std::size_t mesh) {
+  return std::ranges::find(body.meshes, mesh) != body.meshes.end();
+}
+
+/// True if a ray from the point leaves the body once more often than it enters.
+bool is_inside(const RayScene& rays, const BodyPlan& body, const Vec3d& point) {
+  TracedRay traced{Ray(Vec3f(point), Vec3f(kDirection)), {}};
+  int crossed = 0;
+  for (int sheets = 0; sheets < kMostSheets; ++sheets) {
+    rays.intersect_one(traced);
+    if (traced.hit.mesh == Hit::kMiss) break;
+    if (is_of(body, traced.hit.mesh)) crossed += dot(Vec3d(traced.hit.edges_cross), kDirection) > 0 ? 1 : -1;
+    traced.ray.near = std::nextafter(traced.ray.far, std::numeric_limits<float>::infinity());
+    traced.ray.far = std::numeric_limits<float>::infinity();
+    traced.hit = {};
+  }
+  return crossed > 0;
+}
+
+bool has_vertex_inside(const World& world, const RayScene& rays, const BodyPlan& body, std::size_t other) {
+  Bounds box = bounds(world, body.meshes);
+  const Vec3d margin = (box.high - box.low) * 1e-5;  // surfaces that touch
+  box.low += margin;
+  box.high = box.high - margin;
+  const Bounds theirs = bounds(world.meshes[other]);
+  if (max_component(component_max(box.low, theirs.low) - component_min(box.high, theirs.high)) >= 0)
+    return false;
+  std::vector<Vec3d> candidates;
+  for (const Vec3d& p : world.meshes[other].positions)
+    if (min_component(p - box.low) > 0 && min_component(box.high - p) > 0) candidates.push_back(p);
+  const std::size_t step = std::max(candidates.size() / kTested, std::size_t{1});
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < candidates.size(); i += step) found += is_inside(rays, body, candidates[i]);
+  return found > 1;  // one alone may be due to rounding where surfaces touch
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of_shapes_inside(const Scene& scene, const World& world,
+                                                   const RayScene& rays, const Plan& plan) {
+  std::vector<std::string> warnings;
+  if (plan.groups.size() * world.meshes.size() > kMostPairs) return warnings;
+  for (const BodyPlan& body : plan.groups) {
+    if (!method_of(body.method).has_model() || !(body.thickness > 0)) continue;
+    for (std::size_t other = 0; other < world.meshes.size(); ++other)
+      if (!is_of(body, other) && has_vertex_inside(world, rays, body, other))
+        warnings.push_back(fmt::format(
+            "{}: the shape '{}' lies inside, but the method {} ignores it there; --method volume does not",
+            body.name, scene.shapes[other].name, name_of(body.method)));
+  }
+  return warnings;
+}
+
+}  // namespace opaline

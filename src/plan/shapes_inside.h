@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Other shapes inside translucent bodies.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bodies/plan.h"
+#include "geometry/ray_scene.h"
+#include "geometry/world.h"
+
+namespace opaline {
+
+/// Warnings of bodies with a model that have vertices of other shapes inside: light does not meet those there.
+/// Tests some vertices of each shape by a ray; nothing in scenes of thousands of bodies.
+std::vector<std::string> warnings_of_shapes_inside(const Scene& scene, const World& world,
+                                                   const RayScene& rays, const Plan& plan);
+
+}  // namespace opaline
