@@ -37,7 +37,8 @@ bool is_inside(const RayScene& rays, const BodyPlan& body, const Vec3d& point) {
   return crossed > 0;
 }
 
-bool has_vertex_inside(const World& world, const RayScene& rays, const BodyPlan& body, std::size_t other) {
+/// True if the vertices of the shape inside the body span a considerable part of it.
+bool reaches_inside(const World& world, const RayScene& rays, const BodyPlan& body, std::size_t other) {
   Bounds box = bounds(world, body.meshes);
   const Vec3d margin = (box.high - box.low) * 1e-5;  // surfaces that touch
   box.low += margin;
@@ -49,9 +50,12 @@ bool has_vertex_inside(const World& world, const RayScene& rays, const BodyPlan&
   for (const Vec3d& p : world.meshes[other].positions)
     if (min_component(p - box.low) > 0 && min_component(box.high - p) > 0) candidates.push_back(p);
   const std::size_t step = std::max(candidates.size() / kTested, std::size_t{1});
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < candidates.size(); i += step) found += is_inside(rays, body, candidates[i]);
-  return found > 1;  // one alone may be due to rounding where surfaces touch
+  constexpr double kConsiderable = .2;  // fraction of the diagonal, more than the stem of an apple
+  Bounds inside;
+  for (std::size_t i = 0; i < candidates.size(); i += step)
+    if (is_inside(rays, body, candidates[i])) widen(inside.low, inside.high, candidates[i]);
+  return inside.low.x <= inside.high.x &&
+         length(inside.high - inside.low) > kConsiderable * length(box.high - box.low);
 }
 
 }  // namespace
@@ -63,7 +67,7 @@ std::vector<std::string> warnings_of_shapes_inside(const Scene& scene, const Wor
   for (const BodyPlan& body : plan.groups) {
     if (!method_of(body.method).has_model() || !(body.thickness > 0)) continue;
     for (std::size_t other = 0; other < world.meshes.size(); ++other)
-      if (!is_of(body, other) && has_vertex_inside(world, rays, body, other))
+      if (!is_of(body, other) && reaches_inside(world, rays, body, other))
         warnings.push_back(fmt::format(
             "{}: the shape '{}' lies inside, but the method {} ignores it there; --method volume does not",
             body.name, scene.shapes[other].name, name_of(body.method)));

@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Warnings of bodies with a model that have vertices of other shapes inside: light does not meet those there.
+/// Warnings of bodies with a model that have considerable parts of other shapes inside: light does not meet those.
 /// Tests some vertices of each shape by a ray; nothing in scenes of thousands of bodies.
 std::vector<std::string> warnings_of_shapes_inside(const Scene& scene, const World& world,
                                                    const RayScene& rays, const Plan& plan);
