@@ -33,15 +33,15 @@ inline constexpr const char* kRenderNotes = R"(Each option that changes the imag
   --exposure, --view: --set film.<name>=...
 opaline applies these options first and then each --set in order. The last value wins.
 
---target-error is the mean relative error of the diffuse light over the translucent pixels, in the worst channel,
-against the converged --method direct. It excludes the diffusion model's own error and antialiasing; set --spp
-yourself. opaline estimates the error on a small image and adds samples until the estimate is low enough. --verify
-measures the error of the result, at a cost that grows with the square of the accuracy. The closing line "repeat with"
-is a command that makes the same pixels without choosing. With --frames, opaline chooses the settings once, at
-settings.reference_frame, and all frames share them, to avoid flicker. With --method volume_diffusion, the error is
+--target-error is the mean relative error of the diffuse light over the translucent pixels, in the worst channel. It
+excludes antialiasing; set --spp yourself. With volume_diffusion, by --method or by auto for all bodies, the error is
 measured against --method volume without settings.reenter and includes the model error, bounded by the plan's expected
 model error. If the target is below the least error that opaline can promise, a warning states that error and opaline
-uses it.
+uses it. Otherwise the error is that against the converged --method direct, and excludes the error of the radial
+profile; --time-budget and --verify replace auto by hierarchical. opaline estimates the error on a small image and adds samples until the estimate is low enough. --verify
+measures the error of the result, at a cost that grows with the square of the accuracy. The closing line "repeat with"
+is a command that makes the same pixels without choosing. With --frames, opaline chooses the settings once, at
+settings.reference_frame, and all frames share them, to avoid flicker.
 
 --time-budget is the CPU time of the whole program (all threads, user and system), as in the closing table. It
 includes start, loading, choosing and writing, but not --verify. opaline predicts cost and error from small images,

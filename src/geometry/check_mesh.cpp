@@ -145,7 +145,7 @@ class MeshChecker {
   void mend_winding_and_holes() {
     std::vector<Triangle> triangles = all_sites();
     EdgeTable edges(triangles, source_.positions.size());
-    if (settings_.fill_holes != FillHoles::none && !open_edges(edges).empty()) {
+    if (wants_filling(triangles, open_edges(edges))) {
       apply(find_winding(wound(), triangles, edges, false), false);
       fill(edges);
       places_matter_ = true;
@@ -157,6 +157,13 @@ class MeshChecker {
     count_edges(edges);
     for (const TurnedParts& turned : winding.turned) places_matter_ |= turned.parts > 0;
     if (memory_ != nullptr) memory_->parts = std::move(winding.parts);
+  }
+
+  bool wants_filling(const std::vector<Triangle>& sites, const std::vector<Edge>& open) {
+    if (settings_.fill_holes == FillHoles::none || open.empty()) return false;
+    if (settings_.fill_holes == FillHoles::all) return true;
+    places_matter_ = true;
+    return has_small_holes(source_.positions, sites, open);
   }
 
   WoundMesh wound() const { return {source_.positions, source_.triangles, normals()}; }

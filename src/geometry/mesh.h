@@ -69,6 +69,11 @@ struct Bounds {
   Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
 };
 
+/// True if two boxes share a point.
+inline bool meet(const Bounds& a, const Bounds& b) {
+  return max_component(component_max(a.low, b.low) - component_min(a.high, b.high)) <= 0;
+}
+
 /// Bounding box of the vertices; low > high for an empty mesh.
 Bounds bounds(const Mesh& mesh);
 

@@ -10,6 +10,7 @@
 
 #include <OpenMesh/Core/Mesh/DefaultTriMesh.hh>
 #include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
 #include <exception>
 #include <map>
 #include <numbers>
@@ -28,6 +29,16 @@ constexpr std::size_t largest_cubic_hole = 500;
 // Number of edges up to which a fan replaces a triangulation that CGAL does not find.
 constexpr std::size_t kFewEdges = 8;
 
+/// Edges that hang together, around one hole or several that touch.
+struct Rim {
+  double length = 0;
+  double fan = 0;  ///< area of the triangles from one vertex to each edge
+  std::size_t edges = 0;
+
+  /// Upper bound of the area that closes it: a circle, by the isoperimetric inequality, or the fan.
+  double area() const { return std::min(length * length / (4 * std::numbers::pi), fan); }
+};
+
 class HoleFiller {
  public:
   HoleFiller(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
@@ -39,7 +50,6 @@ class HoleFiller {
   HoleFilling run(FillHoles which) {
     std::vector<Halfedge> borders;
     pmp::extract_boundary_cycles(mesh_, std::back_inserter(borders));
-    if (which == FillHoles::if_small && !are_small(borders)) return {};
     for (const Halfedge border : borders) fill(border, which);
     if (which == FillHoles::if_small && !result_.unfilled.empty()) return {};
     return std::move(result_);
@@ -83,28 +93,6 @@ class HoleFiller {
     for (std::size_t i = before; i < points.size(); ++i) original_.push_back(by_position.at(points[i]));
   }
 
-  bool are_small(const std::vector<Halfedge>& borders) const {
-    constexpr double kLargest = 0.05, kLargestSum = 0.1;  // fraction of the mesh's area
-    double area = 0, sum = 0, largest = 0;
-    for (const auto face : mesh_.faces()) area += mesh_.calc_face_area(face);
-    for (const Halfedge border : borders) {
-      double around = 0, fan = 0;
-      std::size_t edges = 0;
-      const HalfedgeMesh::Point apex = mesh_.point(mesh_.from_vertex_handle(border));
-      for (const Halfedge h : CGAL::halfedges_around_face(border, mesh_)) {
-        around += mesh_.calc_edge_length(h);
-        fan += 0.5 * cross(mesh_.point(mesh_.from_vertex_handle(h)) - apex, mesh_.calc_edge_vector(h)).norm();
-        ++edges;
-      }
-      if (edges > largest_cubic_hole) return false;
-      // Upper bounds: a circle by the isoperimetric inequality, and one triangulation.
-      const double hole = std::min(around * around / (4 * std::numbers::pi), fan);
-      largest = std::max(largest, hole);
-      sum += hole;
-    }
-    return largest < kLargest * area && sum < kLargestSum * area;
-  }
-
   std::uint32_t original(OpenMesh::VertexHandle v) const { return original_[std::size_t(v.idx())]; }
 
   /// True if every edge of the border is open in the mesh as it was, not cut where three triangles meet.
@@ -119,7 +107,7 @@ class HoleFiller {
     return open;
   }
 
-  /// Borders along edges of several sheets are filled as well where the result must be closed.
+  /// if_small also fills borders along edges of three triangles or more, as the result must be closed.
   void fill(Halfedge border, FillHoles which) {
     std::size_t edges = 0;
     if (!is_hole(border, edges) && which == FillHoles::all) {
@@ -177,6 +165,30 @@ class HoleFiller {
 };
 
 }  // namespace
+
+bool has_small_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+                     const std::vector<Edge>& open_edges) {
+  constexpr double kLargest = 0.05, kLargestSum = 0.1;  // fraction of the mesh's area
+  boost::disjoint_sets_with_storage<> touching(positions.size());
+  for (const auto& [a, b] : open_edges) touching.union_set(a, b);
+  std::map<std::size_t, Rim> rims;  // by one of their vertices
+  for (const auto& [a, b] : open_edges) {
+    const std::size_t apex = touching.find_set(a);
+    Rim& rim = rims[apex];
+    rim.length += length(positions[b] - positions[a]);
+    rim.fan += 0.5 * length(cross(positions[a] - positions[apex], positions[b] - positions[apex]));
+    ++rim.edges;
+  }
+  double area = 0, sum = 0, largest = 0;
+  for (const auto& [a, b, c] : triangles)
+    area += 0.5 * length(cross(positions[b] - positions[a], positions[c] - positions[a]));
+  for (const auto& [apex, rim] : rims) {
+    if (rim.edges > largest_cubic_hole) return false;
+    largest = std::max(largest, rim.area());
+    sum += rim.area();
+  }
+  return largest < kLargest * area && sum < kLargestSum * area;
+}
 
 HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
                        const std::vector<Edge>& open_edges, FillHoles which) {

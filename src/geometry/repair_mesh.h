@@ -14,7 +14,7 @@ namespace opaline {
 using Edge = std::array<std::uint32_t, 2>;  ///< lower vertex first
 
 /// Holes to fill: none, all of them, or all of them if each has less than 5 % of the mesh's area and their sum
-/// less than 10 %, bounded by their circumference.
+/// less than 10 %.
 enum class FillHoles { none, if_small, all };
 
 struct HoleFilling {
@@ -23,10 +23,15 @@ struct HoleFilling {
   std::vector<std::size_t> unfilled;  ///< number of edges of each unfilled hole
 };
 
+/// True if all holes are small, as FillHoles::if_small requires. Needs no half-edges, whose cost most open meshes
+/// are spared.
+bool has_small_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
+                     const std::vector<Edge>& open_edges);
+
 /// Triangulates the holes of a mesh without new vertices.
 /// in    triangles: consistently wound, no duplicates, no vertex twice in a triangle; open_edges: the edges
 ///       with one triangle, ascending; which: all or if_small
-/// out   if_small: nothing, unless all holes are small and can be filled
+/// out   if_small: nothing, unless all holes can be filled
 /// from  Liepa 2003, by CGAL's triangulate_hole; holes of more than 500 edges only by the faster search over
 ///       a Delaunay triangulation
 HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,

@@ -122,10 +122,7 @@ bool boxes_meet(const World& world, std::span<const std::uint32_t> meshes) {
   std::vector<Bounds> boxes;
   for (const std::uint32_t m : meshes) {
     const Bounds box = bounds(world.meshes[m]);
-    for (const Bounds& other : boxes) {
-      const Vec3d gap = component_max(box.low, other.low) - component_min(box.high, other.high);
-      if (gap.x <= 0 && gap.y <= 0 && gap.z <= 0) return true;
-    }
+    if (std::ranges::any_of(boxes, [&](const Bounds& other) { return meet(box, other); })) return true;
     boxes.push_back(box);
   }
   return false;

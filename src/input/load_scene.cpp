@@ -214,13 +214,12 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
   scene.translation = asset.summary;
   scene.warnings.insert(scene.warnings.begin(), asset.warnings.begin(), asset.warnings.end());
   scene.asset_bytes = asset.bytes;
-  const auto is_of = [&](const char* part, bool is_first) {
-    return std::ranges::any_of(overrides, [&](const std::string& text) {
-      const std::size_t at = text.find(part);
-      return at < text.find('=') && (at == 0 || !is_first);
-    });
+  const auto sets = [&](const auto& is_wanted) {
+    return std::ranges::any_of(
+        overrides, [&](const std::string& text) { return is_wanted(text.substr(0, text.find('='))); });
   };
-  if (is_of(".fit_size", false) && !is_of("camera", true))
+  if (sets([](const std::string& key) { return key.ends_with(".fit_size"); }) &&
+      !sets([](const std::string& key) { return key.starts_with("camera"); }))
     scene.warnings.push_back(
         "fit_size moves and scales a mesh alone: the camera and lights of the asset stay; "
         "--set mm_per_unit=... scales all of them");

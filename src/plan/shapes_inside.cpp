@@ -4,17 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
+#include "geometry/follow_ray.h"
 #include "scene/names.h"
 #include "subsurface/method.h"
 
 namespace opaline {
 namespace {
 
-constexpr std::size_t kTested = 64;  // vertices of a shape
-constexpr int kMostSheets = 64;
+constexpr std::size_t kTested = 64;                         // vertices of a shape
 constexpr std::size_t kMostPairs = 1'000'000;               // bodies times shapes
 const Vec3d kDirection = normalized(Vec3d{.31, .87, .39});  // along no axis
 
@@ -24,16 +23,11 @@ bool is_of(const BodyPlan& body, std::size_t mesh) {
 
 /// True if a ray from the point leaves the body once more often than it enters.
 bool is_inside(const RayScene& rays, const BodyPlan& body, const Vec3d& point) {
-  TracedRay traced{Ray(Vec3f(point), Vec3f(kDirection)), {}};
   int crossed = 0;
-  for (int sheets = 0; sheets < kMostSheets; ++sheets) {
-    rays.intersect_one(traced);
-    if (traced.hit.mesh == Hit::kMiss) break;
-    if (is_of(body, traced.hit.mesh)) crossed += dot(Vec3d(traced.hit.edges_cross), kDirection) > 0 ? 1 : -1;
-    traced.ray.near = std::nextafter(traced.ray.far, std::numeric_limits<float>::infinity());
-    traced.ray.far = std::numeric_limits<float>::infinity();
-    traced.hit = {};
-  }
+  follow_ray(rays, point, kDirection, std::numeric_limits<double>::infinity(), [&](const TracedRay& traced) {
+    if (is_of(body, traced.hit.mesh)) crossed += leaves(traced.hit, kDirection) ? 1 : -1;
+    return true;
+  });
   return crossed > 0;
 }
 
@@ -43,9 +37,7 @@ bool reaches_inside(const World& world, const RayScene& rays, const BodyPlan& bo
   const Vec3d margin = (box.high - box.low) * 1e-5;  // surfaces that touch
   box.low += margin;
   box.high = box.high - margin;
-  const Bounds theirs = bounds(world.meshes[other]);
-  if (max_component(component_max(box.low, theirs.low) - component_min(box.high, theirs.high)) >= 0)
-    return false;
+  if (!meet(box, bounds(world.meshes[other]))) return false;
   std::vector<Vec3d> candidates;
   for (const Vec3d& p : world.meshes[other].positions)
     if (min_component(p - box.low) > 0 && min_component(box.high - p) > 0) candidates.push_back(p);

@@ -4,40 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/follow_ray.h"
+
 namespace opaline {
 namespace {
 
-constexpr int kMostSheets = 64;  // maximum sheets along a ray
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 constexpr double kFacing = -.5;        // cosine between the normals of sheets touching
 constexpr std::size_t kTested = 4096;  // pieces
 
-/// Calls met(traced) for each triangle along a ray, as long as it returns true.
-template <class Met>
-void follow(const RayScene& rays, const Vec3d& from, const Vec3d& direction, double far, const Met& met) {
-  TracedRay traced{Ray(Vec3f(from), Vec3f(direction), float(far)), {}};
-  for (int sheets = 0; sheets < kMostSheets; ++sheets) {
-    rays.intersect_one(traced);
-    if (traced.hit.mesh == Hit::kMiss || !met(traced)) return;
-    traced.ray.near = std::nextafter(traced.ray.far, std::numeric_limits<float>::infinity());
-    traced.ray.far = float(far);
-    traced.hit = {};
-  }
-}
-
 /// True if the box of one of the meshes meets that of any other mesh of the world.
 bool any_box_meets(const World& world, std::span<const std::uint32_t> meshes) {
   for (const std::uint32_t m : meshes)
-    for (std::size_t other = 0; other < world.boxes.size(); ++other) {
-      const Bounds &a = world.boxes[m], &b = world.boxes[other];
-      if (other != m && max_component(component_max(a.low, b.low) - component_min(a.high, b.high)) <= 0)
-        return true;
-    }
+    for (std::size_t other = 0; other < world.boxes.size(); ++other)
+      if (other != m && meet(world.boxes[m], world.boxes[other])) return true;
   return false;
-}
-
-bool leaves(const Hit& hit, const Vec3d& direction) {
-  return dot(Vec3d(hit.edges_cross), direction) > 0;
 }
 
 }  // namespace
@@ -72,7 +53,7 @@ void OuterSurface::follow_to_end(const Vec3d& from, const Vec3d& direction, cons
     }
     return;
   }
-  follow(rays_, from, direction, kEndless, [&](const TracedRay& traced) {
+  follow_ray(rays_, from, direction, kEndless, [&](const TracedRay& traced) {
     if (traced.hit.mesh < is_body_.size() && is_body_[traced.hit.mesh])
       crossed(double(traced.ray.far), leaves(traced.hit, direction) ? 1 : -1);
     return true;
@@ -102,7 +83,7 @@ bool OuterSurface::touches(const BoundaryPiece& piece, const Vec3d& outward) con
     return std::ranges::any_of(hits, faces_it);
   }
   bool found = false;
-  follow(rays_, from, outward, least_gap_, [&](const TracedRay& traced) {
+  follow_ray(rays_, from, outward, least_gap_, [&](const TracedRay& traced) {
     if (traced.hit.mesh >= is_body_.size() || !is_body_[traced.hit.mesh]) return true;
     found = faces_it(traced.hit);
     return !found;

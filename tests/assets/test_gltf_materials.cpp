@@ -180,7 +180,7 @@ TEST(GltfMaterials, ValuesOutOfRangeAreSaid) {
 
 // Claim: a number outside of the range that glTF 2.0 or an extension gives it is clamped, with one warning that names its place,
 // the range and the value; numbers at the ends of their range are taken without a word. Source: the JSON schemas of glTF 2.0 and
-// its extensions. Fails if a row of the table is missing, or a material of two meshes is told twice.
+// its extensions. Fails if a row of the table is missing, or the warning of a material repeats for its second mesh.
 TEST(GltfMaterials, NumbersOutOfRangeAreClampedWithAWarning) {
   const Json bad = {
       {"emissiveFactor", {0, -1, 0}},

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <random>
 
-#include "methods/hierarchical/light_distance.h"
 #include "plan/make_plan.h"
+#include "subsurface/light_distance.h"
 #include "support/scenes.h"
 #include "support/surfaces.h"
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "methods/hierarchical/hierarchical_method.h"
-#include "methods/hierarchical/light_distance.h"
 #include "methods/hierarchical/surface_caches.h"
 #include "scene/scene_properties.h"
+#include "subsurface/light_distance.h"
 #include "subsurface/plan_samples.h"
 
 namespace opaline {

@@ -6,9 +6,9 @@
 #include <variant>
 
 #include "diffusion/diffuse_profile.h"
-#include "methods/hierarchical/light_distance.h"
 #include "methods/volume_diffusion/volume_diffusion_method.h"
 #include "scene/scene_properties.h"
+#include "subsurface/light_distance.h"
 #include "subsurface/plan_samples.h"
 #include "volume/volume_diffusion.h"
 
@@ -32,8 +32,7 @@ std::string reason_against_cells(const Scene& scene, const World& world, const B
   if (!varies(scene, body) && is_too_large_for_cells(scene.settings, body))
     return fmt::format(
         "it requires more than {:.2g} million cells of {:.3g} mean free paths, and its surface is flat on "
-        "that "
-        "scale",
+        "that scale",
         kMostCells / 1e6, widest_cell(scene.settings));
   return {};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "methods/hierarchical/light_distance.h"
+#include "subsurface/light_distance.h"
 
 #include <fmt/format.h>
 
