@@ -64,9 +64,9 @@ std::string lights_text(const std::vector<Light>& lights) {
 }
 
 /// Adds profile and error, for methods using a radial profile.
-void add_model(Paragraphs& plan, const BodyPlan& group, double across_air) {
+void add_model(Paragraphs& plan, const Scene& scene, const BodyPlan& group, double across_air) {
   if (method_of(group.method).uses_radial_profile()) add_row(plan, "", "profile " + model_text(group.model));
-  const std::string error = model_error_text(group.model, group.method);
+  const std::string error = model_error_text(group.model, group.method, gathers_light(scene, group));
   if (!error.empty()) add_row(plan, "", error);
   constexpr double kWorthSaying = .02;
   if (across_air > kWorthSaying)
@@ -80,7 +80,7 @@ void add_group(Paragraphs& plan, const Scene& scene, const World& world, const B
   add_row(plan, "translucent",
           fmt::format("{} of {}: {:.4g} mm^2, {}", group.name, scene.media[group.medium].name, group.area,
                       mean_free_path_text(group)));
-  add_model(plan, group, share_across_air(scene, world, group));
+  add_model(plan, scene, group, share_across_air(scene, world, group));
   if (!method_of(scene.settings.method).needs_samples()) return;
   add_row(plan, "", samples_text(group));
 }

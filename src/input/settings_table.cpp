@@ -236,12 +236,13 @@ std::span<const Member<Settings>> settings_members() {
           "of 0.45 diffuse mean free paths; smaller cells are slower and more accurate"),
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "", {walks},
-          "`volume`: re-entry of outgoing and reflected light into the same body, as in concavities; "
-          "`false`: such light is lost. Other methods: `bounces`"),
+          "`volume` and `volume_diffusion`: re-entry of outgoing light into the same body, as in concavities, "
+          "for `volume` of reflected light too; `false`: such light is lost. Other methods: `bounces`"),
       member<&Settings::bounces>(
           "bounces", whole_number, "", {0, 1}, "1 if one surface can light another", {},
           "all methods but `volume`: 1: one bounce of light between surfaces, such as from a floor to the "
-          "object on it, or within one body; 0: direct light only"),
+          "object on it, or within one body, and all bounces between bodies of `volume_diffusion`; 0: direct "
+          "light only"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
                               {samples, transfers, exitance, walks, surfaces, gathered, view_surfaces},
                               "random seed; the same seed gives the same image"),

@@ -131,14 +131,13 @@ std::string model_text(const BodyModel& model) {
   return fmt::format("{}: {}", name_of(model.profile.kind), model.reason);
 }
 
-std::string model_error_text(const BodyModel& model, Method method) {
+std::string model_error_text(const BodyModel& model, Method method, bool reenters) {
   const std::optional<double> own = expected_error(model, method);
   if (!own) return {};
-  const std::string text = "expected model error " + percent_text(*own);
-  if (method == Method::volume_diffusion || !model.expected_error_of_diffusion)
-    return text + " (without re-entry)";
-  return text + "; --method volume_diffusion: " + percent_text(*model.expected_error_of_diffusion) +
-         " (both without re-entry)";
+  std::string text = "expected model error " + percent_text(*own);
+  if (!reenters) text += " (without re-entry)";
+  if (method == Method::volume_diffusion || !model.expected_error_of_diffusion) return text;
+  return text + "; --method volume_diffusion: " + percent_text(*model.expected_error_of_diffusion);
 }
 
 BodyModel planned_model(const Scene& scene, const BodyPlan& group) {

@@ -26,7 +26,8 @@ struct BodyShape {
 /// Chosen profile, and the reason.
 std::string model_text(const BodyModel& model);
 /// Text of the expected model error of a method; empty: unknown, or none.
-std::string model_error_text(const BodyModel& model, Method method);
+/// reenters: true if the method's image includes light entering the body again
+std::string model_error_text(const BodyModel& model, Method method, bool reenters);
 
 /// Derived in src/diffusion/README.md; bench_volume_models measures the figures.
 BodyModel choose_model(const Medium& medium, const BodyShape& shape);

@@ -110,7 +110,10 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
         plan.stages.push_back(group.name + ": " + text);
     for (const Method one : used) method_of(one).list_stages(scene, plan.stages);
   }
-  if (bounces_of(scene) > 0) plan.stages.push_back(method.bounces_stage());
+  if (bounces_of(scene) > 0)
+    plan.stages.push_back(method.bounces_stage());
+  else if (std::ranges::any_of(plan.groups, [&](const BodyPlan& body) { return gathers_light(scene, body); }))
+    plan.stages.push_back("re-entry: light leaving the body, gathered at its samples");
   if (used.empty()) used.push_back(scene.settings.method);
   std::ranges::sort(used, std::greater());
   std::string shading;

@@ -7,15 +7,15 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {
 
 constexpr std::uint64_t kSeed = 4000;
-// Gathered rays: from a sample (few, because the medium blurs neighbouring samples); from a hit without
-// cached irradiance; from a cache point, per pixel of its spacing, at least and at most. Closer cache points
+// Gathered rays: from a hit without cached irradiance; from a cache point, per pixel of its spacing, at least and at most. Closer cache points
 // use the maximum.
-constexpr int kOfSample = 16, kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
+constexpr int kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
 constexpr std::size_t kPlacesAtOnce = 256;  // each of many rays, and the threads share them
 constexpr int kAcross = 64;                 // cache points along the image's longer side, first lattice
 constexpr int kAround = 2;                  // beyond each border
@@ -287,6 +287,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
     if (held != nullptr) held->resize(chunk_count(samples.size(), kGatheredAtOnce));
     std::vector<RgbF>& own = bounced.emplace_back(samples.size());
     const std::uint64_t seed = hash_bits(input.scene.settings.seed, kSeed + 2 + bounced.size());
+    const int rays_each = method_of(body.plan.method).gathered_rays();
     parallel_chunks(
         samples.size(), kGatheredAtOnce, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
           std::vector<SurfacePoint> points;
@@ -297,7 +298,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
             keys.push_back(i);
           }
           const std::vector<RgbF> gathered =
-              gathered_irradiance({input.rays, shader, points, keys, float(body.profile.eta), kOfSample, seed,
+              gathered_irradiance({input.rays, shader, points, keys, float(body.profile.eta), rays_each, seed,
                                    held != nullptr ? &(*held)[chunk] : nullptr, view});
           std::ranges::copy(gathered, own.begin() + std::ptrdiff_t(begin));
           advance(input.monitor, end - begin);

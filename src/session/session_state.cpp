@@ -214,7 +214,7 @@ void Session::State::prepare(Monitor* monitor) {
       return true;
     });
   }
-  if (bounces_of(scene_) > 0)
+  if (std::ranges::any_of(plan_.groups, [&](const BodyPlan& body) { return gathers_light(scene_, body); }))
     in_stage("bounces", [&] {
       update_bounces(bodies);
       return true;

@@ -49,6 +49,9 @@ struct Session::State {
   void update_tint(Body& body, BodyKeys& known);
   std::vector<std::vector<RgbF>> cached_bounces(std::span<const StageKey> keys);
   void update_bounces(std::span<BodyStages> stages);
+  /// Transmitted irradiance at the samples of each body from surfaces; all bounces between bodies whose methods
+  /// support re-entry, one otherwise.
+  std::vector<std::vector<RgbF>> gathered_bounces(std::span<BodyStages> stages);
   HeldView* held_view();
   HeldView* held_view_of_samples(const PrecomputeInput& input);
   void update_bounced_places(const RenderInput& input);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Indirect light: at the samples of bodies and at cache points of the image.
+#include <algorithm>
 #include <memory>
 
 #include "input/settings_table.h"
@@ -12,6 +13,18 @@ namespace {
 
 void tint_bounced(const Body& body, std::span<RgbF> bounced) {
   for (std::size_t i = 0; i < body.entering.size(); ++i) bounced[i] = bounced[i] * body.entering[i];
+}
+
+/// Sum of all bounces: a geometric series, from the first bounce and the sum of the first two.
+std::vector<RgbF> all_bounces(std::span<const RgbF> first, std::span<const RgbF> two) {
+  constexpr float kLargestRatio = .8f;  // above the diffuse reflectance of closed cavities in common media
+  std::vector<RgbF> all(first.begin(), first.end());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float second = std::max(0.f, two[i][c] - first[i][c]);
+      if (second > 0) all[i][c] += second / (1 - std::min(kLargestRatio, second / first[i][c]));
+    }
+  return all;
 }
 
 /// Replaces the light of bodies by their direct light, for gathering the first bounce; the destructor
@@ -43,7 +56,7 @@ class DirectlyLitBodies {
 // Bounced light depends on all bodies.
 void Session::State::update_bounces(std::span<BodyStages> bodies) {
   const PrecomputeInput& input = bodies.front().input;
-  KeyBuilder all("bounces", 2);
+  KeyBuilder all("bounces", 3);
   all.add(surfaces_key(input, mesh_keys_, bodies.front().lights));
   for (const Body& body : bodies_) all.add(method_of(body.plan.method).direct_key(body));
   std::vector<StageKey> wanted;
@@ -56,8 +69,7 @@ void Session::State::update_bounces(std::span<BodyStages> bodies) {
   if (is_there) return;
   std::vector<std::vector<RgbF>> bounced = cached_bounces(wanted);
   if (bounced.empty()) {
-    for (BodyStages& stages : bodies) method_of(stages.body.plan.method).remove_bounced(stages);
-    bounced = bounced_at_samples(input, bodies_, held_view_of_samples(input));
+    bounced = gathered_bounces(bodies);
     for (std::size_t b = 0; b < bodies.size(); ++b)
       store_.keep(wanted[b], bounced[b], BouncedCodec{bounced[b].size()});
   }
@@ -66,6 +78,33 @@ void Session::State::update_bounces(std::span<BodyStages> bodies) {
     method_of(bodies_[b].plan.method).add_bounced(bodies[b], bounced[b], wanted[b]);
     note_decision(bodies_[b], "light from other surfaces gathered");
   }
+}
+
+std::vector<std::vector<RgbF>> Session::State::gathered_bounces(std::span<BodyStages> bodies) {
+  const PrecomputeInput& input = bodies.front().input;
+  for (BodyStages& stages : bodies) method_of(stages.body.plan.method).remove_bounced(stages);
+  HeldView own;  // hits of the first bounce, for the second
+  HeldView* const held = held_view_of_samples(input);
+  HeldView* const view = held != nullptr ? held : &own;
+  std::vector<std::vector<RgbF>> first = bounced_at_samples(input, bodies_, view);
+  const bool is_dark = std::ranges::all_of(first, [](const auto& body) {
+    return std::ranges::all_of(body, [](const RgbF& e) { return e == RgbF{}; });
+  });
+  if (is_dark || !std::ranges::all_of(bodies_, [](const Body& body) {
+        return method_of(body.plan.method).supports_reentry();
+      }))
+    return first;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    std::vector<RgbF> tinted = first[b];
+    tint_bounced(bodies_[b], tinted);
+    method_of(bodies_[b].plan.method).add_bounced(bodies[b], tinted, {});
+  }
+  const std::vector<std::vector<RgbF>> two = bounced_at_samples(input, bodies_, view);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    first[b] = all_bounces(first[b], two[b]);
+    method_of(bodies_[b].plan.method).remove_bounced(bodies[b]);
+  }
+  return first;
 }
 
 /// Cached view with the gathering of the bodies' current samples; null: caching is off.

@@ -47,6 +47,10 @@ class SubsurfaceMethod {
   virtual std::optional<double> expected_error(const BodyModel& model) const { return model.expected_error; }
   /// False if surfaces cannot light each other.
   virtual bool supports_bounces() const { return true; }
+  /// True if light leaving a body alone in the scene may enter it again.
+  virtual bool supports_reentry() const { return false; }
+  /// Rays gathering bounced light at a sample; few, because the medium blurs neighbouring samples.
+  virtual int gathered_rays() const { return 16; }
   /// True if the image of a light alone equals its contribution to the image of all lights, noise included.
   virtual bool separates_lights() const { return true; }
 
@@ -108,6 +112,9 @@ class SubsurfaceMethod {
 };
 
 const SubsurfaceMethod& method_of(Method method);
+
+/// True if light from other surfaces or from the same body is gathered at the samples of a body.
+bool gathers_light(const Scene& scene, const BodyPlan& body);
 
 /// Radiant exitance at arbitrary points of a body's surface. For mean free paths below the sample spacing,
 /// `render` traces shadow rays for the irradiance at its points; this function interpolates it.

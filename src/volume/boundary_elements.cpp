@@ -110,13 +110,16 @@ struct Polygon {
 
 /// Clips at the integer planes of an axis and calls found(polygon) for each part.
 template <class Found>
-void cut(Polygon polygon, std::size_t axis, const Found& found) {
-  double low = polygon.corners[0][axis], high = low;
-  for (std::size_t i = 1; i < polygon.count; ++i) {
-    low = std::min(low, polygon.corners[i][axis]);
-    high = std::max(high, polygon.corners[i][axis]);
+void cut(const Polygon& whole, std::size_t axis, const Found& found) {
+  double low = whole.corners[0][axis], high = low;
+  for (std::size_t i = 1; i < whole.count; ++i) {
+    low = std::min(low, whole.corners[i][axis]);
+    high = std::max(high, whole.corners[i][axis]);
   }
-  for (double plane = std::floor(low) + 1; plane < high; ++plane) {
+  double plane = std::floor(low) + 1;
+  if (!(plane < high)) return found(whole);
+  for (Polygon polygon = whole;; ++plane) {
+    if (!(plane < high)) return found(polygon);
     Polygon below, above;
     for (std::size_t i = 0; i < polygon.count; ++i) {
       const Vec3d &a = polygon.corners[i], &b = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
@@ -131,7 +134,6 @@ void cut(Polygon polygon, std::size_t axis, const Found& found) {
     polygon = above;
     if (polygon.count < 3) return;
   }
-  found(polygon);
 }
 
 /// Part of a triangle in an element.

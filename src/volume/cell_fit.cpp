@@ -31,48 +31,52 @@ using Terms = std::array<double, kTerms>;
 
 /// 1 where normals agree; 0 where the surface has turned too far.
 double alike(const Vec3f& a, const Vec3f& b) {
-  return std::max(0.0, double(dot(a, b) - kLeastCosine) / double(1 - kLeastCosine));
+  constexpr double kPerRange = 1 / double(1 - kLeastCosine);
+  return std::max(0.0, double(dot(a, b) - kLeastCosine) * kPerRange);
 }
 
-/// Falls from 1 to 0 at the radius.
-double bump(const Vec3f& apart, float radius) {
-  const float distance2 = dot(apart, apart), radius2 = radius * radius;
-  if (!(distance2 < radius2)) return 0;
-  const double left = 1 - double(distance2) / double(radius2);
-  return left * left;
+/// Falls from 1 to 0 at the radius; its argument is the squared distance over the squared radius.
+double bump(double distance2) {
+  const double left = 1 - distance2;
+  return left > 0 ? left * left : 0;
 }
 
 /// Symmetric, positive definite.
 class NormalEquations {
  public:
   void add(const Terms& terms, double weight) {
-    for (std::size_t i = 0; i < kTerms; ++i)
-      for (std::size_t j = 0; j <= i; ++j) rows_[i][j] += weight * terms[i] * terms[j];
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      const double weighted = weight * terms[i];
+      for (std::size_t j = 0; j < kTerms; ++j) rows_[i][j] += weighted * terms[j];
+    }
   }
 
-  /// Cholesky factorization, in place. Regularized: coefficients not determined by few or collinear
-  /// neighbours become 0.
-  void factor() {
+  /// Inverse of the matrix, by Cholesky factorization. Regularized: coefficients not determined by few or
+  /// collinear neighbours become 0.
+  std::array<Terms, kTerms> inverse() const {
     constexpr double kLeastSlope = 1e-4, kLeastCurvature = 1e-3;
-    for (std::size_t i = 1; i < kTerms; ++i) rows_[i][i] += i < 3 ? kLeastSlope : kLeastCurvature;
+    std::array<Terms, kTerms> factor{}, inverse{};  // lower triangles; the factor's diagonal is not stored
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      double diagonal = rows_[i][i] + (i == 0 ? 0 : i < 3 ? kLeastSlope : kLeastCurvature);
+      for (std::size_t j = 0; j < i; ++j) {
+        double sum = rows_[i][j];
+        for (std::size_t k = 0; k < j; ++k) sum -= factor[i][k] * factor[j][k];
+        factor[i][j] = sum * inverse[j][j];
+        diagonal -= factor[i][j] * factor[i][j];
+      }
+      inverse[i][i] = 1 / std::sqrt(std::max(diagonal, 1e-30));
+      for (std::size_t j = 0; j < i; ++j) {
+        for (std::size_t k = j; k < i; ++k) inverse[i][j] -= factor[i][k] * inverse[k][j];
+        inverse[i][j] *= inverse[i][i];
+      }
+    }
+    std::array<Terms, kTerms> product{};
     for (std::size_t i = 0; i < kTerms; ++i)
       for (std::size_t j = 0; j <= i; ++j) {
-        double sum = rows_[i][j];
-        for (std::size_t k = 0; k < j; ++k) sum -= rows_[i][k] * rows_[j][k];
-        rows_[i][j] = i == j ? std::sqrt(std::max(sum, 1e-30)) : sum / rows_[j][j];
+        for (std::size_t k = i; k < kTerms; ++k) product[i][j] += inverse[k][i] * inverse[k][j];
+        product[j][i] = product[i][j];
       }
-  }
-
-  Terms solve(Terms b) const {
-    for (std::size_t i = 0; i < kTerms; ++i) {
-      for (std::size_t k = 0; k < i; ++k) b[i] -= rows_[i][k] * b[k];
-      b[i] /= rows_[i][i];
-    }
-    for (std::size_t i = kTerms; i-- > 0;) {
-      for (std::size_t k = i + 1; k < kTerms; ++k) b[i] -= rows_[k][i] * b[k];
-      b[i] /= rows_[i][i];
-    }
-    return b;
+    return product;
   }
 
  private:
@@ -122,7 +126,9 @@ CellWeights::CellWeights(std::span<const SurfaceSample> samples)
 CellWeights::Chunk CellWeights::chunk_of(const Places& places, std::span<const SurfaceSample> samples,
                                          std::size_t begin, std::size_t end) {
   const float radius = kFitRadius * places.spacing;
-  const double scale = 1 / double(places.spacing);
+  const double scale = 1 / double(places.spacing), per_radius2 = 1 / (double(radius) * double(radius));
+  constexpr double kPerSurpriseRadius2 =
+      double(kFitRadius * kFitRadius / (kSurpriseRadius * kSurpriseRadius));
   const auto moment_of = [&](std::uint32_t sample) {
     return kCellMoment * double(samples[sample].area) * scale * scale;
   };
@@ -135,14 +141,15 @@ CellWeights::Chunk CellWeights::chunk_of(const Places& places, std::span<const S
     double weights = 0;
     places.middles.for_near(own.position, radius, [&](const NearestSample::Member& member) {
       const Vec3f apart = member.position - own.position;
+      const double distance2 = double(dot(apart, apart)) * per_radius2;
+      if (!(distance2 < 1)) return;
       const double turned = alike(member.normal, own.normal),
-                   weight = bump(apart, radius) * turned * double(samples[member.sample].area);
+                   weight = bump(distance2) * turned * double(samples[member.sample].area);
       if (!(weight > 0)) return;
       const double u = double(dot(apart, frame.along_u)) * scale,
                    v = double(dot(apart, frame.along_v)) * scale, moment = moment_of(member.sample);
       means.push_back({member.sample, weight, {1, u, v, u * u + moment, u * v, v * v + moment}});
-      chunk.neighbours.push_back(
-          {member.sample, float(bump(apart, kSurpriseRadius * places.spacing) * turned)});
+      chunk.neighbours.push_back({member.sample, float(bump(distance2 * kPerSurpriseRadius2) * turned)});
       weights += weight;
     });
     if (means.empty()) {
@@ -150,12 +157,14 @@ CellWeights::Chunk CellWeights::chunk_of(const Places& places, std::span<const S
       chunk.terms.push_back({1});
     }
     NormalEquations equations;
-    for (FittedMean& mean : means) equations.add(mean.terms, mean.weight /= weights);
-    equations.factor();
+    for (FittedMean& mean : means) equations.add(mean.terms, mean.weight *= 1 / weights);
+    const std::array<Terms, kTerms> inverse = equations.inverse();
     for (const FittedMean& mean : means) {
-      Terms weighted = mean.terms;
-      for (double& term : weighted) term *= mean.weight;
-      const Terms solved = equations.solve(weighted);
+      Terms solved{};
+      for (std::size_t i = 0; i < kTerms; ++i) {  // symmetric: columns are rows
+        const double weighted = mean.weight * mean.terms[i];
+        for (std::size_t j = 0; j < kTerms; ++j) solved[j] += weighted * inverse[i][j];
+      }
       std::ranges::transform(solved, chunk.terms.emplace_back().begin(), [](double t) { return float(t); });
     }
     chunk.frames.push_back(frame);

@@ -11,9 +11,10 @@
 
 namespace opaline {
 
-/// R G B and an unused fourth, filling a vector register.
-struct alignas(16) Channels {
-  std::array<float, 4> c{};
+/// R G B and an unused fourth, in a vector register; extension of GCC and Clang.
+struct Channels {
+  typedef float Four __attribute__((vector_size(16)));
+  Four c{};
 };
 
 /// For each cell: sum over links of diffusivity x conductance x (own - other's fluence) + loss x fluence =

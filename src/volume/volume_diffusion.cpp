@@ -101,7 +101,12 @@ VolumeExitance VolumeDiffusion::exitance(std::span<const Light> lights,
 }
 
 VolumeExitance VolumeDiffusion::exitance_of_even(std::span<const RgbF> entering, Monitor* monitor) const {
-  return state_->exitance({{}, {}, {}, entering}, monitor);
+  if (monitor != nullptr) monitor->begin("diffusion", 2 * state_->coarse.elements());
+  VolumeExitance result;
+  result.exitance = state_->coarse.solve({{}, {}, {}, entering}, {}, monitor).exitance;
+  advance(monitor, state_->coarse.elements());
+  result.error.resize(result.exitance.size());
+  return result;
 }
 
 VolumeExitance VolumeDiffusion::State::exitance(const EnteringLight& light, Monitor* monitor) const {

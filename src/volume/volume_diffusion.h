@@ -62,8 +62,9 @@ class VolumeDiffusion {
                           std::span<const RgbF> tints = {}, Monitor* monitor = nullptr) const;
 
   /// Exitance for uniform incident light at each sample, the approximation for light from other surfaces.
+  /// Uses cells of twice the size, as this light is smooth and a small part of all.
   /// in    entering: transmitted irradiance, W per area, one per sample
-  /// out   as above
+  /// out   error: 0, as that of cells for other light does not apply
   VolumeExitance exitance_of_even(std::span<const RgbF> entering, Monitor* monitor = nullptr) const;
 
   /// Cells of the finer grid.

@@ -81,8 +81,9 @@ BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyP
   const double in_wires =
       body.thickness > 0 ? 1.2 * needle_fraction(input.world, body) * body.cell / body.thickness : 0;
   BodyMemory memory;
-  memory.kept += std::size_t(std::max(1., in_wires) * double(body.samples)) *
-                 (kCutSample + kLight * input.lights.size() + (bounces_of(input.scene) > 0 ? kBounces : 0));
+  memory.kept +=
+      std::size_t(std::max(1., in_wires) * double(body.samples)) *
+      (kCutSample + kLight * input.lights.size() + (gathers_light(input.scene, body) ? kBounces : 0));
   memory.kept += std::size_t((kBytesOfCell + (varies(input.scene, body) ? kVaryingCell : 0)) *
                              expected_cells(body.area, body.thickness, body.cell));
   return memory;
@@ -90,10 +91,10 @@ BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyP
 
 double VolumeDiffusionMethod::seconds(const Scene& scene, const BodyPlan& body,
                                       const Lighting& lighting) const {
-  constexpr double kCutSample = 8e-6;    // cut, and its fit
-  constexpr double kCell = 4e-6;         // made and solved, three channels
-  constexpr double kVaryingCell = 1e-5;  // its own medium
-  const double solutions = bounces_of(scene) > 0 ? 2 : 1;
+  constexpr double kCutSample = 8e-6;                             // cut, and its fit
+  constexpr double kCell = 4e-6;                                  // made and solved, three channels
+  constexpr double kVaryingCell = 1e-5;                           // its own medium
+  const double solutions = gathers_light(scene, body) ? 1.5 : 1;  // on coarser cells
   const double cell = kCell * solutions + (varies(scene, body) ? kVaryingCell : 0);
   return expected_cells(body.area, body.thickness, body.cell) * cell +
          double(body.samples) *

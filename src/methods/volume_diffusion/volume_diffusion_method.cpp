@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -113,7 +114,7 @@ void VolumeDiffusionMethod::prepare(BodyStages& stages) const {
         fit_cells(stages, state.weights, state.direct.value.exitance, state.direct.value.error);
     state.direct.key = key;
     remove_bounced(stages);
-  } else if (bounces_of(stages.input.scene) == 0) {
+  } else if (!gathers_light(stages.input.scene, body.plan)) {
     remove_bounced(stages);
   }
   stages.note("diffusion", source, has_cells ? "solved on the existing cells" : "solved");
@@ -136,12 +137,19 @@ void VolumeDiffusionMethod::remove_bounced(BodyStages& stages) const {
 void VolumeDiffusionMethod::add_bounced(BodyStages& stages, std::span<const RgbF> bounced,
                                         const StageKey& key) const {
   auto& state = state_of<VolumeDiffusionState>(stages.body);
-  if (state.bounced.key == key) return;
+  if (key != StageKey{} && state.bounced.key == key) return;
   remove_bounced(stages);
   const std::size_t samples = stages.body.surface.samples.size();
+  if (std::ranges::all_of(bounced, [](const RgbF& irradiance) { return irradiance == RgbF{}; })) {
+    state.bounced.key = key;
+    return;
+  }
+  const auto solve = [&] { return update_cells(stages).exitance_of_even(bounced, stages.input.monitor); };
   StageResult<VolumeExitance> added;
-  stages.store.get(added, key, VolumeCodec{samples},
-                   [&] { return update_cells(stages).exitance_of_even(bounced, stages.input.monitor); });
+  if (key == StageKey{})
+    added.value = solve();
+  else
+    stages.store.get(added, key, VolumeCodec{samples}, solve);
   std::vector<RgbF> all, errors;
   for (std::size_t i = 0; i < samples; ++i) {
     all.push_back(state.direct.value.exitance[i] + added.value.exitance[i]);

@@ -13,6 +13,8 @@ class VolumeDiffusionMethod : public SubsurfaceMethod {
   std::optional<double> expected_error(const BodyModel& model) const override {
     return model.expected_error_of_diffusion;
   }
+  bool supports_reentry() const override { return true; }
+  int gathered_rays() const override { return 8; }
   void plan(const PlanningInput& input, BodyPlan& body, std::vector<std::string>& warnings) const override;
   BodyMemory memory(const PlanningInput& input, const BodyPlan& body) const override;
   double seconds(const Scene& scene, const BodyPlan& body, const Lighting& lighting) const override;
