@@ -2,6 +2,7 @@
 // Indirect light: at the samples of bodies and at cache points of the image.
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "input/settings_table.h"
 #include "render/bounced_light.h"
@@ -15,17 +16,37 @@ void tint_bounced(const Body& body, std::span<RgbF> bounced) {
   for (std::size_t i = 0; i < body.entering.size(); ++i) bounced[i] = bounced[i] * body.entering[i];
 }
 
-/// Sum of all bounces: a geometric series, from the first bounce and the sum of the first two.
-std::vector<RgbF> all_bounces(std::span<const RgbF> first, std::span<const RgbF> two) {
-  constexpr float kLargestRatio = .8f;  // above the diffuse reflectance of closed cavities in common media
-  std::vector<RgbF> all(first.begin(), first.end());
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float second = std::max(0.f, two[i][c] - first[i][c]);
-      if (second > 0) all[i][c] += second / (1 - std::min(kLargestRatio, second / first[i][c]));
-    }
-  return all;
-}
+/// Convergence of the bounces: light added by each, over all bodies and channels.
+class BounceSeries {
+ public:
+  /// in    before, now: irradiance by all bounces so far, without and with the last; one list per body
+  void add(std::span<const Body> bodies, const std::vector<std::vector<RgbF>>& before,
+           const std::vector<std::vector<RgbF>>& now) {
+    previous_ = last_;
+    last_ = all_ = 0;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      for (std::size_t i = 0; i < now[b].size(); ++i) {
+        const RgbF added = now[b][i] - (before.empty() ? RgbF{} : before[b][i]);
+        const auto area = double(bodies[b].surface.samples[i].area);
+        last_ += area * double(added.x + added.y + added.z);
+        all_ += area * double(now[b][i].x + now[b][i].y + now[b][i].z);
+      }
+  }
+  /// Ratio of two bounces.
+  double ratio() const {
+    constexpr double kLargest = .9;  // noise; not reached by media that absorb
+    return previous_ > 0 ? std::clamp(last_ / previous_, 0., kLargest) : 0;
+  }
+  /// Sum of all further bounces over the last one, as a geometric series.
+  double rest() const { return ratio() / (1 - ratio()); }
+  bool has_converged() const {
+    constexpr double kLeast = .03;  // of the bounced light, which is itself a part of all light
+    return !(last_ > 0) || (previous_ > 0 && last_ * rest() < kLeast * all_);
+  }
+
+ private:
+  double previous_ = 0, last_ = 0, all_ = 0;
+};
 
 /// Replaces the light of bodies by their direct light, for gathering the first bounce; the destructor
 /// restores it. An interrupted constructor leaves the bodies unchanged: it replaces nothing before everything
@@ -81,30 +102,35 @@ void Session::State::update_bounces(std::span<BodyStages> bodies) {
 }
 
 std::vector<std::vector<RgbF>> Session::State::gathered_bounces(std::span<BodyStages> bodies) {
+  constexpr int kMostBounces = 8;
   const PrecomputeInput& input = bodies.front().input;
   for (BodyStages& stages : bodies) method_of(stages.body.plan.method).remove_bounced(stages);
-  HeldView own;  // hits of the first bounce, for the second
+  HeldView own;  // hits of the first bounce, for the others
   HeldView* const held = held_view_of_samples(input);
   HeldView* const view = held != nullptr ? held : &own;
-  std::vector<std::vector<RgbF>> first = bounced_at_samples(input, bodies_, view);
-  const bool is_dark = std::ranges::all_of(first, [](const auto& body) {
-    return std::ranges::all_of(body, [](const RgbF& e) { return e == RgbF{}; });
-  });
-  if (is_dark || !std::ranges::all_of(bodies_, [](const Body& body) {
-        return method_of(body.plan.method).supports_reentry();
-      }))
-    return first;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    std::vector<RgbF> tinted = first[b];
-    tint_bounced(bodies_[b], tinted);
-    method_of(bodies_[b].plan.method).add_bounced(bodies[b], tinted, {});
+  std::vector<std::vector<RgbF>> all = bounced_at_samples(input, bodies_, view);
+  if (!std::ranges::all_of(bodies_,
+                           [](const Body& body) { return method_of(body.plan.method).supports_reentry(); }))
+    return all;
+  BounceSeries series;
+  series.add(bodies_, {}, all);
+  for (int bounce = 2; bounce <= kMostBounces && !series.has_converged(); ++bounce) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      std::vector<RgbF> tinted = all[b];
+      tint_bounced(bodies_[b], tinted);
+      method_of(bodies_[b].plan.method).add_for_gathering(bodies[b], tinted);
+    }
+    const std::vector<std::vector<RgbF>> before =
+        std::exchange(all, bounced_at_samples(input, bodies_, view));
+    series.add(bodies_, before, all);
+    if (!series.has_converged() && bounce < kMostBounces) continue;
+    const auto rest = float(series.rest());
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      for (std::size_t i = 0; i < all[b].size(); ++i)
+        all[b][i] += component_max(all[b][i] - before[b][i], RgbF{}) * rest;
   }
-  const std::vector<std::vector<RgbF>> two = bounced_at_samples(input, bodies_, view);
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    first[b] = all_bounces(first[b], two[b]);
-    method_of(bodies_[b].plan.method).remove_bounced(bodies[b]);
-  }
-  return first;
+  for (BodyStages& stages : bodies) method_of(stages.body.plan.method).remove_bounced(stages);
+  return all;
 }
 
 /// Cached view with the gathering of the bodies' current samples; null: caching is off.

@@ -89,6 +89,8 @@ class SubsurfaceMethod {
   /// Adds light from other surfaces.
   /// in    bounced: transmitted irradiance, one per sample; key: its key
   virtual void add_bounced(BodyStages&, std::span<const RgbF> /*bounced*/, const StageKey& /*key*/) const {}
+  /// Adds bounced light to the state, for gathering the next bounce; needed for supports_reentry() only.
+  virtual void add_for_gathering(BodyStages&, std::span<const RgbF> /*bounced*/) const {}
   /// A state under the lights alone, for light gathered from this body.
   virtual std::unique_ptr<MethodState> direct_state(const BodyStages&) const { return nullptr; }
   /// Last step, once all light is there. Returns true if it computed or reused anything.

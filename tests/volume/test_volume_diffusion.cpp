@@ -61,7 +61,8 @@ TEST(VolumeDiffusion, FlatFaceIsAHalfSpace) {
 
 // Claim: light of equal radiance from all sides sends out what surroundings do, wherever it enters. Source: the same light by
 // other directions. Tolerance: .3 % in the mean, which is .07 % with eta 1 (1.8 % were the directions spread evenly over the
-// hemisphere), and rms over a box 6 and 2 %, few directions each. Fails if: they are not spread by the cosine and the boundary.
+// hemisphere), and rms over a box 7 and 3 %, few directions each,
+// on cells of twice the size. Fails if: they are not spread by the cosine and the boundary.
 TEST(VolumeDiffusion, EvenLightIsThatOfSurroundings) {
   LitBody body(BoxShape{{-4, -3, -2}, {4, 3, 2}}, 2000, NormalMode::faceted);
   const Surroundings light{Rgb(1)};
@@ -84,7 +85,7 @@ TEST(VolumeDiffusion, EvenLightIsThatOfSurroundings) {
       square += area * change * change;
     }
     EXPECT_NEAR(sum, 0, .003) << eta;
-    EXPECT_LT(std::sqrt(square), eta > 1 ? .02 : .06) << eta;
+    EXPECT_LT(std::sqrt(square), eta > 1 ? .03 : .07) << eta;
   }
 }
 

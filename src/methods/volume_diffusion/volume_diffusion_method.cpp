@@ -90,6 +90,14 @@ RgbF local_reflectance(const Scene& scene, const Body& body) {
   return local;
 }
 
+/// Fit of the direct light and another exitance.
+std::shared_ptr<const CellFit> fit_with(BodyStages& stages, std::span<const RgbF> added) {
+  auto& state = state_of<VolumeDiffusionState>(stages.body);
+  std::vector<RgbF> all = state.direct.value.exitance;
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] += added[i];
+  return fit_cells(stages, state.weights, all, state.direct.value.error);
+}
+
 }  // namespace
 
 const VolumeDiffusionState& volume_diffusion_state(const Body& body) {
@@ -137,26 +145,22 @@ void VolumeDiffusionMethod::remove_bounced(BodyStages& stages) const {
 void VolumeDiffusionMethod::add_bounced(BodyStages& stages, std::span<const RgbF> bounced,
                                         const StageKey& key) const {
   auto& state = state_of<VolumeDiffusionState>(stages.body);
-  if (key != StageKey{} && state.bounced.key == key) return;
+  if (state.bounced.key == key) return;
   remove_bounced(stages);
-  const std::size_t samples = stages.body.surface.samples.size();
   if (std::ranges::all_of(bounced, [](const RgbF& irradiance) { return irradiance == RgbF{}; })) {
     state.bounced.key = key;
     return;
   }
-  const auto solve = [&] { return update_cells(stages).exitance_of_even(bounced, stages.input.monitor); };
   StageResult<VolumeExitance> added;
-  if (key == StageKey{})
-    added.value = solve();
-  else
-    stages.store.get(added, key, VolumeCodec{samples}, solve);
-  std::vector<RgbF> all, errors;
-  for (std::size_t i = 0; i < samples; ++i) {
-    all.push_back(state.direct.value.exitance[i] + added.value.exitance[i]);
-    errors.push_back(state.direct.value.error[i] + added.value.error[i]);
-  }
-  state.fit = fit_cells(stages, state.weights, all, errors);
+  stages.store.get(added, key, VolumeCodec{stages.body.surface.samples.size()},
+                   [&] { return update_cells(stages).exitance_of_even(bounced, stages.input.monitor); });
+  state.fit = fit_with(stages, added.value.exitance);
   state.bounced = std::move(added);
+}
+
+void VolumeDiffusionMethod::add_for_gathering(BodyStages& stages, std::span<const RgbF> bounced) const {
+  const VolumeExitance added = update_cells(stages).exitance_of_even(bounced, stages.input.monitor);
+  state_of<VolumeDiffusionState>(stages.body).fit = fit_with(stages, added.exitance);
 }
 
 std::unique_ptr<MethodState> VolumeDiffusionMethod::direct_state(const BodyStages& stages) const {

@@ -26,6 +26,7 @@ class VolumeDiffusionMethod : public SubsurfaceMethod {
   StageKey bounced_key(const Body& body) const override;
   void remove_bounced(BodyStages& stages) const override;
   void add_bounced(BodyStages& stages, std::span<const RgbF> bounced, const StageKey& key) const override;
+  void add_for_gathering(BodyStages& stages, std::span<const RgbF> bounced) const override;
   std::unique_ptr<MethodState> direct_state(const BodyStages& stages) const override;
   bool finish(BodyStages& stages) const override;
   std::vector<std::string> warnings(const Body& body, double unit) const override;
