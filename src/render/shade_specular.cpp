@@ -49,6 +49,15 @@ struct Frame {
   Vec3f world(const Vec3f& d) const { return x * d.x + y * d.y + z * d.z; }
 };
 
+/// False if all lights are below the horizon of a point.
+bool may_be_lit(std::span<const Light> lights, const SurfacePoint& point) {
+  return std::ranges::any_of(lights, [&](const Light& light) {
+    if (!is_delta(light)) return true;
+    const LightSample sample = sample_light(light, point.position, point.normal, {.5, .5}, 1);
+    return sample.weight > 0 && dot(sample.direction, point.normal) > 0;
+  });
+}
+
 void add_hit(const SurfaceHits& hits, std::size_t i, SurfaceHits& to) {
   to.points.push_back(hits.points[i]);
   to.hits.push_back(hits.hits[i]);
@@ -127,9 +136,9 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
     PixelSample& sample = batch.out[hits.rays[i]];
     RgbF arriving = sample.irradiance * (kInversePi / (1 - appearance.average_reflectance));
     // Without an irradiance in the field, it follows from the exitance: outgoing light over that of uniform
-    // illumination.
+    // illumination. Light leaving a face in shadow may come from inside alone.
     const float leaving = appearance.translucent ? 1 - appearance.reflectance(cosine) : 0;
-    if (arriving == RgbF{} && leaving > 0)
+    if (arriving == RgbF{} && leaving > 0 && may_be_lit(lights_, hits.points[i]))
       for (std::size_t c = 0; c < 3; ++c)
         if (appearance.albedo[c] > 0) arriving[c] = sample.diffuse[c] / (leaving * appearance.albedo[c]);
     sample.specular += arriving * appearance.mirrored_share(cosine);
