@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "asset_files/gltf_file.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 
+#include "asset_files/asset_file.h"
 #include "opaline/error.h"
 
 namespace opaline {
 namespace {
 
 constexpr std::size_t kVersionAt = 4, kFirstChunk = 12, kChunkHeader = 8, kAlignment = 4;
+constexpr std::size_t kShown = 40;  // first characters of another file
 constexpr std::string_view kJson = "JSON", kBinary{"BIN\0", 4};
 
 std::size_t number_at(std::string_view file, std::size_t at) {
@@ -29,6 +32,18 @@ std::string_view chunk_at(const std::string& path, std::string_view file, std::s
     throw bad_file(path, std::string("its ") + name + " chunk is cut off", std::to_string(length) + " bytes",
                    std::to_string(rest));
   return file.substr(at + kChunkHeader, length);
+}
+
+/// error unless the first character is that of an object or a list
+void check_begins_as_json(const std::string& path, std::string_view file) {
+  const std::size_t first = file.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (first == file.npos || file[first] == '{' || file[first] == '[') return;
+  const std::string_view start = file.substr(first, kShown);
+  const bool is_text = std::ranges::all_of(
+      start, [](char c) { return (c >= ' ' && c != 0x7f) || c == '\n' || c == '\r' || c == '\t'; });
+  throw bad_file(path, "is not a glTF file", "a file that begins with glTF (binary) or { (JSON)",
+                 is_text ? "text that begins " + in_quotes(start.substr(0, start.find_first_of("\r\n")))
+                         : "binary data");
 }
 
 int value_of_letter(char c) {
@@ -57,7 +72,10 @@ std::optional<std::string> decoded_base64(std::string_view text) {
 }  // namespace
 
 GltfChunks gltf_chunks(const std::string& path, std::string_view file) {
-  if (!file.starts_with("glTF")) return {file, {}};
+  if (!file.starts_with("glTF")) {
+    check_begins_as_json(path, file);
+    return {file, {}};
+  }
   if (file.size() < kFirstChunk + kChunkHeader) throw bad_file(path, "its header is cut off");
   if (const std::size_t version = number_at(file, kVersionAt); version != 2)
     throw bad_file(path, "has an unsupported version", "binary glTF 2", std::to_string(version));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -29,11 +30,14 @@ struct AssetScene {
   bool is_one_mesh = false;      ///< true if its shapes are parts of one body
   bool has_vertex_colors = false;
   std::vector<std::string> translated, not_carried;
-  std::vector<std::string> warnings;  ///< changes of the image
-  std::size_t bytes = 0;              ///< as ImportedAsset's
+  std::vector<std::string> warnings;                         ///< changes of the image
+  std::size_t bytes = 0;                                     ///< as ImportedAsset's
+  std::vector<std::shared_ptr<const TextureFile>> textures;  ///< as ImportedAsset's
+  std::map<std::string, std::set<std::string>> warned;       ///< places of each warning, by its text
 
-  /// Adds a warning of a lost statement or value of a file that changes the image.
+  /// Adds a warning of a lost statement or value of a file that changes the image, once.
   void warn(const std::string& place, const std::string& what) {
+    if (!warned[what].insert(place).second) return;
     not_carried.push_back(what);
     warnings.push_back(place + ": " + what);
   }

@@ -139,22 +139,32 @@ class MaterialTranslator {
 
   void warn(const std::string& text) { scene_.warn(gltf_.path, label_ + ": " + text); }
 
+  /// Warns of an index of a texture that does not exist.
+  bool exists(const GltfRecord& info, const std::string& name) {
+    const std::uint32_t index = info.index("index");
+    if (index == kNoRecord || index < gltf_.count("textures")) return true;
+    warn(name + ": " + record_name("textures", index) + " is not there");
+    return false;
+  }
+
   /// None: missing, or not supported.
   std::optional<Json> texture(const GltfRecord& info, const std::string& name) {
-    if (info.index("index") == kNoRecord) return {};
+    if (info.index("index") == kNoRecord || !exists(info, name)) return {};
     if (!use_.has_uvs) {
       not_carried(name + ": its mesh has no TEXCOORD_0");
       return {};
     }
     try {
       std::string warning;
-      Json json = texture_json(gltf_, info, use_.mesh_path, warning);
+      const bool is_color = name == base_.color_texture_name || name.ends_with("ColorTexture");
+      Json json = texture_json(gltf_, info, use_.mesh_path, is_color, scene_.textures, warning);
       if (!warning.empty()) warn(name + ' ' + warning);
       translated(name + " -> " + json["texture"].get<std::string>());
       return json;
     } catch (const OutsideAsset&) {
       throw;
     } catch (const Error& failure) {
+      if (failure.kind != ErrorKind::bad_input) throw;
       warn(name + ": " + failure.message + (failure.got.empty() ? "" : ": " + in_quotes(failure.got)));
       return {};
     }
@@ -311,7 +321,7 @@ class MaterialTranslator {
     const Vec3d color = color_of(volume, "attenuationColor", Vec3d(1));
     if (!(distance > 0) || !std::isfinite(distance) || color == Vec3d(1) ||
         scatter.multiscatter_color == Vec3d()) {
-      not_carried(
+      warn(
           "scattering requires attenuationDistance, attenuationColor below 1 and a multiscatter "
           "colour; treated as opaque");
       return {};
@@ -359,17 +369,18 @@ class MaterialTranslator {
   }
 
   void tell_losses(bool is_translucent) {
-    const auto add = [this](const std::string& name) {
-      if (!carried_.contains(name)) not_carried("texture " + name);
+    const auto add = [this](const GltfRecord& owner, const std::string& name) {
+      if (!carried_.contains(name) && exists(owner.record(name.c_str()), name))
+        not_carried("texture " + name);
     };
     for (const char* name : {"occlusionTexture", "emissiveTexture"})
-      if (material_.record(name).index("index") != kNoRecord) add(name);
+      if (material_.record(name).index("index") != kNoRecord) add(material_, name);
     for (const std::string& extension : extensions_.keys())
       for (const std::string& key : values(extension.c_str()).keys())
-        if (key.ends_with("Texture")) add(key);
+        if (key.ends_with("Texture")) add(values(extension.c_str()), key);
     const std::vector<double> emissive = material_.numbers("emissiveFactor", 3);
     if (!emissive.empty() && emissive != std::vector<double>{0, 0, 0})
-      not_carried("emissiveFactor: ignored, emission is not supported");
+      warn("emissiveFactor: ignored, emission is not supported");
     tell_alpha();
     tell_extensions(is_translucent);
   }
@@ -384,6 +395,12 @@ class MaterialTranslator {
       warn("alphaMode " + in_quotes(mode) + ": ignored, the surface has no holes");
   }
 
+  bool transmits(const std::string& extension) const {
+    const char* const factor =
+        extension == "KHR_materials_transmission" ? "transmissionFactor" : "diffuseTransmissionFactor";
+    return values(extension.c_str()).number(factor, 0) > 0;
+  }
+
   void tell_extensions(bool is_translucent) {
     constexpr std::array<std::string_view, 3> of_volume{"KHR_materials_transmission", "KHR_materials_volume",
                                                         "KHR_materials_diffuse_transmission"};
@@ -394,8 +411,10 @@ class MaterialTranslator {
       if (std::ranges::find(read, name) != read.end()) continue;
       if (std::ranges::find(of_volume, name) == of_volume.end())
         not_carried(name);
+      else if (!is_translucent && transmits(name))
+        warn(name + ": a clear, non-scattering body is not supported; treated as opaque");
       else if (!is_translucent)
-        not_carried(name + ": a clear, non-scattering body is not supported; treated as opaque");
+        not_carried(name);
     }
   }
 

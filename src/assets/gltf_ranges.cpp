@@ -108,7 +108,7 @@ Json within_ranges(const GltfModel& gltf, const char* list, std::size_t index,
     const std::string what = place_of(record, range) + " is out of range (expected " + text_of(range) +
                              ", got " + given + "): uses " + (range.is_above ? "the default" : value.dump());
     if (range.is_above) json[object].erase(range.key);
-    if (std::ranges::find(scene.not_carried, what) == scene.not_carried.end()) scene.warn(gltf.path, what);
+    scene.warn(gltf.path, what);
   }
   return json;
 }

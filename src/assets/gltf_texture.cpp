@@ -7,6 +7,7 @@
 #include "asset_files/gltf_file.h"
 #include "asset_files/gltf_image.h"
 #include "core/input_file.h"
+#include "image/texture_file.h"
 
 namespace opaline {
 namespace {
@@ -20,13 +21,23 @@ std::size_t image_of(const GltfModel& gltf, std::size_t texture) {
   return image;
 }
 
-/// error unless present and in one of glTF's own formats
-void check_image(const GltfModel& gltf, std::size_t index) {
+/// error unless present, in one of glTF's own formats, and undamaged
+std::shared_ptr<const TextureFile> opened_image(const GltfModel& gltf, std::size_t index, bool is_color) {
   const GltfImage image = gltf_image(gltf, index);
-  std::string start = image.bytes.substr(0, 8);
-  if (!image.path.empty()) start = InputFile(image.path).read(0, 8);
-  if (!start.starts_with("\x89PNG") && !start.starts_with("\xff\xd8\xff"))
-    fail_at(gltf.path, record_name("images", index), "is not a supported image", "PNG or JPEG");
+  try {
+    std::string start = image.bytes.substr(0, 8);
+    if (!image.path.empty()) start = InputFile(image.path).read(0, 8);
+    if (!start.starts_with("\x89PNG") && !start.starts_with("\xff\xd8\xff"))
+      throw bad_file(gltf.path, "neither PNG nor JPEG");
+    return TextureFile::open_as(
+        image.path.empty() ? gltf.path + std::string(kGltfImageWord) + std::to_string(index) : image.path,
+        is_color);
+  } catch (const Error& failure) {
+    if (failure.kind != ErrorKind::bad_input) throw;
+    const std::string name =
+        image.path.empty() ? "" : ' ' + in_quotes(std::filesystem::path(image.path).filename().string());
+    fail_at(gltf.path, record_name("images", index) + name, "cannot be used: " + failure.message);
+  }
 }
 
 Json pair_json(const GltfRecord& transform, const char* key, double otherwise) {
@@ -43,8 +54,8 @@ void add_transform(const GltfRecord& transform, Json& json) {
 
 }  // namespace
 
-Json texture_json(const GltfModel& gltf, const GltfRecord& info, const std::string& mesh_path,
-                  std::string& warning) {
+Json texture_json(const GltfModel& gltf, const GltfRecord& info, const std::string& mesh_path, bool is_color,
+                  std::vector<std::shared_ptr<const TextureFile>>& opened, std::string& warning) {
   const GltfRecord transform = info.record("extensions").record("KHR_texture_transform");
   const std::size_t uv_set = transform.size("texCoord", info.size("texCoord", 0)),
                     texture = info.index("index");
@@ -52,7 +63,7 @@ Json texture_json(const GltfModel& gltf, const GltfRecord& info, const std::stri
     fail_at(gltf.path, record_name("textures", texture), "uses another set of UVs", "TEXCOORD_0",
             "TEXCOORD_" + std::to_string(uv_set));
   const std::size_t image = image_of(gltf, texture);
-  check_image(gltf, image);
+  opened.push_back(opened_image(gltf, image, is_color));
   const NamedFile file = gltf_image_file(gltf, gltf.record("images", image));
   warning = file.warning;
   Json json{{"texture", file.path.empty() ? mesh_path + std::string(kGltfImageWord) + std::to_string(image)

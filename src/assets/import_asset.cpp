@@ -39,7 +39,8 @@ std::string summary_of(const AssetScene& scene, bool own_camera, bool own_lights
                                  scene.media.size() == 1 ? "medium" : "media", own_camera ? "its" : "default",
                                  own_lights ? "its" : "default");
   constexpr std::size_t kMostNamed = 4;
-  const std::vector<std::string>& lost = scene.not_carried;
+  std::vector<std::string> lost = scene.not_carried;
+  std::erase_if(lost, [&](const std::string& what) { return scene.warned.contains(what); });
   for (std::size_t i = 0; i < std::min(kMostNamed, lost.size()); ++i)
     text += (i == 0 ? "; not imported: " : ", ") + lost[i];
   if (lost.size() > kMostNamed) text += fmt::format(" and {} more", lost.size() - kMostNamed);
@@ -93,7 +94,8 @@ ImportedAsset import_asset(const std::string& path, const std::string& mesh_path
     std::string text = scene_text(scene, std::filesystem::path(path).filename().string());
     std::string summary = summary_of(scene, own_camera, own_lights);
     return {std::move(text),           std::move(scene.translated), std::move(scene.not_carried),
-            std::move(scene.warnings), std::move(summary),          scene.bytes};
+            std::move(scene.warnings), std::move(summary),          scene.bytes,
+            std::move(scene.textures)};
   } catch (const Json::exception&) {
     throw bad_file(path, "contains a name that is not UTF-8", "names in UTF-8");
   }

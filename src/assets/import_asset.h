@@ -3,18 +3,22 @@
 // scene file.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace opaline {
+
+class TextureFile;
 
 struct ImportedAsset {
   std::string text;                      ///< a scene file, see scenes/README.md
   std::vector<std::string> translated;   ///< conversions of values, a line each
   std::vector<std::string> not_carried;  ///< parts without import, a line each
   std::vector<std::string> warnings;     ///< missing files and other changes of the image, a line each
-  std::string summary;                   ///< one line
+  std::string summary;                   ///< one line, without the warnings
   std::size_t bytes = 0;                 ///< memory of its records during reading
+  std::vector<std::shared_ptr<const TextureFile>> textures = {};  ///< opened already: the scene reuses them
 };
 
 /// True for a file name with an asset's extension, in upper or lower case.

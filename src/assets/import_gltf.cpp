@@ -169,13 +169,9 @@ class GltfImporter {
     const GltfPrimitive& primitive = mesh.primitives[p];
     const bool skinned = is_skinned(gltf_, placed.index, primitive);
     const Transform t = skinned ? Transform{} : placed.to_world;
-    if (!(std::abs(dot(normalized(t.x), cross(normalized(t.y), normalized(t.z)))) > 1e-12)) {
-      if (const std::string lost =
-              label + ": its transform is singular; the mesh is ignored" + zero_scale_text(placed.index);
-          !is_told(lost))
-        scene_.warn(gltf_.path, lost);
-      return;
-    }
+    if (!(std::abs(dot(normalized(t.x), cross(normalized(t.y), normalized(t.z)))) > 1e-12))
+      return scene_.warn(gltf_.path, label + ": its transform is singular; the mesh is ignored" +
+                                         zero_scale_text(placed.index));
     std::string part = fmt::format("{}/{}", node.mesh, p);
     if (is_posed(gltf_, placed.index, primitive)) part += fmt::format("/{}", placed.index);
     const std::string name = shape_names_.take(node.name.empty() ? mesh.name : node.name, "shape");
@@ -260,10 +256,6 @@ class GltfImporter {
                          short_triple(scale));
     }
     return {};
-  }
-
-  bool is_told(const std::string& lost) const {
-    return !scene_.not_carried.empty() && scene_.not_carried.back() == lost;
   }
 
   template <class Visit>

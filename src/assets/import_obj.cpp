@@ -94,8 +94,12 @@ class ObjImporter {
       : path_(path), mesh_path_(std::move(mesh_path)) {}
 
   AssetScene run() {
-    const ObjOutline outline = read_outline(read_asset_text(path_));
-    if (outline.materials.empty()) throw bad_file(path_, "contains no visible mesh", "a mesh with faces");
+    const std::string text = read_asset_text(path_);
+    if (text.empty()) throw bad_file(path_, "the file is empty");
+    const ObjOutline outline = read_outline(text);
+    if (outline.materials.empty())
+      throw bad_file(path_, "contains no faces", "an OBJ mesh: lines with v x y z and f 1 2 3",
+                     fmt::format("{} vertices", outline.vertices.size()));
     enclose(scene_, [&](const auto& visit) { std::ranges::for_each(outline.vertices, visit); });
     scene_.is_one_mesh = true;
     has_uvs_ = outline.has_uvs;
@@ -213,8 +217,12 @@ class ObjImporter {
   /// out   file: its path
   Json texture_of(const MtlMaterial& material, const MtlStatement& statement, const MtlTexture& texture,
                   std::string& file) {
-    file = find(texture.name, material.file, statement.line, statement.keyword);
     const std::string label = label_of(material, statement, texture);
+    if (texture.name.empty()) {
+      warn(material.file, statement.line, label + ": it names no file");
+      return {};
+    }
+    file = find(texture.name, material.file, statement.line, statement.keyword);
     if (file.empty()) {
       warn(material.file, statement.line, label + ": there is no such file");
       return {};
@@ -234,18 +242,16 @@ class ObjImporter {
     return statement.keyword + ' ' + in_quotes(texture.name) + " of material " + in_quotes(material.name);
   }
 
-  /// The file as an image.
-  /// error Error{bad_input} naming the line of the library, the material and the file
+  /// The file as an image; null after a warning: it cannot be read.
   std::shared_ptr<const TextureFile> opened(const MtlMaterial& material, const MtlStatement& statement,
                                             const MtlTexture& texture, const std::string& file,
                                             bool is_color) {
     try {
-      if (!is_color) return TextureFile::open(file, ColorSpace::linear);
-      return TextureFile::open(file, TextureFile::space_of_colors(file), TextureContent::colors);
+      return scene_.textures.emplace_back(TextureFile::open_as(file, is_color));
     } catch (const Error& failure) {
-      throw Error(failure.kind, material.file, int(statement.line), 0,
-                  label_of(material, statement, texture) + ": " + failure.file + ": " + failure.message,
-                  failure.expected, failure.got);
+      if (failure.kind != ErrorKind::bad_input) throw;
+      warn(material.file, statement.line, label_of(material, statement, texture) + ": " + failure.message);
+      return nullptr;
     }
   }
 
@@ -254,8 +260,8 @@ class ObjImporter {
     std::string file;
     Json json = texture_of(material, statement, texture, file);
     if (json.is_null()) return;
-    opened(material, statement, texture, file, true);
-    surface.picture = {std::move(json), texture.gain};
+    if (opened(material, statement, texture, file, true) != nullptr)
+      surface.picture = {std::move(json), texture.gain};
   }
 
   /// The value of -bm is the height of white, in the OBJ's unit. Some programs write normal maps here,
@@ -266,7 +272,9 @@ class ObjImporter {
     Json json = texture_of(material, statement, texture, file);
     if (json.is_null()) return;
     if (const double height = texture.bump * texture.gain; height != 1) json["scale"] = height;
-    const Texel mean = opened(material, statement, texture, file, false)->mean();
+    const std::shared_ptr<const TextureFile> picture = opened(material, statement, texture, file, false);
+    if (picture == nullptr) return;
+    const Texel mean = picture->mean();
     const bool is_normal_map = use_of(statement) == MtlUse::normal_map ||
                                (mean[2] > .6 && mean[2] > mean[0] + .1 && mean[2] > mean[1] + .1);
     surface.bump = {is_normal_map ? "normal_map" : "bump_map", statement.keyword, std::move(json)};

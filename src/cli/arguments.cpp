@@ -207,8 +207,7 @@ std::vector<std::string> ways_to_set(const CLI::App& command, std::string key) {
   for (const std::string& path : similar_key_paths(key)) {
     const std::string option(option_of_key(path));
     const CLI::Option* own = option.empty() ? nullptr : command.get_option_no_throw(option);
-    const std::size_t dot = path.find('.');
-    const ValueType type = key_info(path.substr(0, dot), path.substr(dot + 1)).type;
+    const ValueType type = key_at(path).type;
     const bool is_number = type == ValueType::number || type == ValueType::whole_number;
     ways.push_back(own != nullptr ? option + ' ' + own->get_type_name()
                                   : "--set " + path + (is_number ? "=N" : "=VALUE"));
@@ -225,13 +224,29 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-Error unknown_option(const CLI::App& command, const std::string& text) {
+/// Names of the commands with an option, below one: "render", "cache ls".
+std::vector<std::string> commands_with(const CLI::App& parent, const std::string& option) {
+  std::vector<std::string> found;
+  for (const CLI::App* command :
+       parent.get_subcommands([](const CLI::App* c) { return !c->get_group().empty(); })) {
+    const std::vector<std::string> names = option_names(*command);
+    if (std::ranges::find(names, option) != names.end()) found.push_back(command->get_name());
+    for (const std::string& inner : commands_with(*command, option))
+      found.push_back(command->get_name() + ' ' + inner);
+  }
+  return found;
+}
+
+Error unknown_option(const CLI::App& app, const CLI::App& command, const std::string& text) {
   const std::string name = text.substr(0, text.find('='));
   const std::vector<std::string> names = option_names(command);
   // A prefix matches full names; an unknown letter matches names beginning with it.
   const bool is_letter = name.size() == 2;
   const std::string beginning = is_letter ? '-' + name : name;
   std::vector<std::string> meant = is_letter ? std::vector<std::string>{} : ways_to_set(command, name);
+  if (const std::vector<std::string> others = commands_with(app, name); meant.empty() && !others.empty())
+    return usage_error(fmt::format("unknown option '{}' (an option of opaline {}){}", printable(name),
+                                   fmt::join(others, ", "), hint(command)));
   if (meant.empty())
     std::ranges::copy_if(names, std::back_inserter(meant),
                          [&](const std::string& word) { return word.starts_with(beginning); });
@@ -257,7 +272,7 @@ Error parse_error(const CLI::App& app, const CLI::ParseError& failure) {
   if (!is_unknown || extras.empty()) return usage_error(what + hint(command));
   if (has_commands && !extras.front().starts_with('-')) return unknown_command(command, extras.front());
   const auto option = std::ranges::find_if(extras, [](const std::string& e) { return e.starts_with('-'); });
-  if (option != extras.end()) return unknown_option(command, *option);
+  if (option != extras.end()) return unknown_option(app, command, *option);
   return usage_error("unexpected argument '" + printable(extras.front()) + "'" + hint(command));
 }
 

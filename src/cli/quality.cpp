@@ -56,6 +56,10 @@ KnownErrors choose_cells(StageRunner& stages, const RenderArguments& arguments, 
   return known;
 }
 
+void warn_of_unlit(const Log& log, const char* option) {
+  print_warning(log, fmt::format("the scene has no lights, so {} has no effect", option));
+}
+
 /// The given option of the two; "" for neither.
 const char* option_of(const RenderArguments& render) {
   return render.target_error ? "--target-error" : render.time_budget ? "--time-budget" : "";
@@ -126,6 +130,16 @@ void warn_of_little_time(const RenderArguments& arguments, const Film& film, dou
                             *arguments.time_budget, spent));
 }
 
+void warn_of_unlit_options(const RenderArguments& arguments, const Scene& scene) {
+  if (!scene.lights.empty()) return;
+  const std::pair<bool, const char*> options[] = {{arguments.verify, "--verify"},
+                                                  {arguments.gives_until_error, "--until-error"},
+                                                  {arguments.gives_entry_samples, "--entry-samples"},
+                                                  {!arguments.resume.empty(), "--resume"}};
+  for (const auto& [given, option] : options)
+    if (given) warn_of_unlit(arguments.log, option);
+}
+
 RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache* cache) {
   const int reference = load_scene(arguments.scene, arguments.overrides).settings.reference_frame;
   StageRunner stages(arguments.log);
@@ -157,7 +171,10 @@ FinishPicture trial_writing(const RenderArguments& arguments, const Film& film) 
 }
 
 KnownErrors choose_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
-  if (session.scene().lights.empty()) return {};  // a black image has no error
+  if (session.scene().lights.empty()) {  // a black image has no error
+    if (chooses_settings(arguments)) warn_of_unlit(arguments.log, option_of(arguments));
+    return {};
+  }
   const Settings& settings = session.scene().settings;
   if (arguments.time_budget &&
       (settings.method == Method::lambert || settings.method == Method::volume_diffusion))

@@ -19,7 +19,7 @@ void check_quality(const RenderArguments& arguments);
 void name_method(const RenderArguments& arguments, Session& session);
 
 /// Chooses the settings for --target-error or --time-budget, if given, and prints them. The session has the
-/// scene.
+/// scene; without lights a warning replaces the choice.
 /// error Error{bad_input}: a method without a choice of settings, also with --verify; a classic evaluator
 KnownErrors choose_settings(StageRunner& stages, const RenderArguments& arguments, Session& session);
 
@@ -33,6 +33,9 @@ FinishPicture trial_writing(const RenderArguments& arguments, const Film& film);
 
 /// The session's limit for print_plan: maximum time of `direct` with --time-budget.
 Plan announced_plan(const RenderArguments& arguments, const Session& session);
+
+/// A warning for each other option without effect in a scene without lights.
+void warn_of_unlit_options(const RenderArguments& arguments, const Scene& scene);
 
 /// A warning where --time-budget is less than a single pass takes.
 void warn_of_little_time(const RenderArguments& arguments, const Film& film, double spent,

@@ -246,7 +246,10 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   check_memory(scene, session.plan(), layer_bytes);
   if (arguments.target_error) print_trial(arguments.log, seconds_of_trial(session));
   KnownErrors errors = choose_settings(stages, arguments, session);
-  if (shared.last_plan->empty()) warn_of_unused_media(arguments.log, arguments.overrides, scene);
+  if (shared.last_plan->empty()) {
+    warn_of_unlit_options(arguments, scene);
+    warn_of_unused_media(arguments.log, arguments.overrides, scene);
+  }
   print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session), shared.last_plan);
   check_memory(scene, session.plan(), layer_bytes);  // with the chosen settings
   return errors;

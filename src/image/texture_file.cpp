@@ -141,6 +141,11 @@ std::shared_ptr<const TextureFile> TextureFile::open(const std::string& path, Co
   return texture;
 }
 
+std::shared_ptr<const TextureFile> TextureFile::open_as(const std::string& path, bool is_color) {
+  if (!is_color) return open(path, ColorSpace::linear);
+  return open(path, space_of_colors(path), TextureContent::colors);
+}
+
 ColorSpace TextureFile::space_of_colors(const std::string& path) {
   const std::string first = is_tiled(path) ? tile_files(path).begin()->second : path;
   return reader().is_float(source_of(first, true)) ? ColorSpace::linear : ColorSpace::srgb;

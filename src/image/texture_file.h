@@ -54,6 +54,9 @@ class TextureFile {
   ///       or several layers of them, primaries not spanning a colour space
   static std::shared_ptr<const TextureFile> open(const std::string& path, ColorSpace space,
                                                  TextureContent content = TextureContent::data);
+  /// Opens a file without a declared colour space, as colours or as data.
+  /// error as open
+  static std::shared_ptr<const TextureFile> open_as(const std::string& path, bool is_color);
   /// Colour space of a file without a declared one: linear for floats, otherwise sRGB.
   /// error as open
   static ColorSpace space_of_colors(const std::string& path);

@@ -283,6 +283,7 @@ std::unique_ptr<CachedPicture> open_cached(PictureSource source, TextureEncoding
 }
 
 bool holds_floats(const PictureSource& source) {
+  check_is_whole(source);  // libpng prints a line of its own on opening a damaged header
   return open_picture(source, kTextureFormats).input->spec().format.is_floating_point();
 }
 

@@ -223,7 +223,8 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
     scene.warnings.push_back(
         "fit_size moves and scales a mesh alone: the camera and lights of the asset stay; "
         "--set mm_per_unit=... scales all of them");
-  if (!asset.not_carried.empty()) scene.translation += "; opaline import lists all";
+  // Each warning is also among the parts not carried.
+  if (asset.not_carried.size() > asset.warnings.size()) scene.translation += "; opaline import lists all";
   forget_places(scene);
   return scene;
 }

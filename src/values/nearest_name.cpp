@@ -83,9 +83,10 @@ constexpr OtherWord kOtherWords[] = {
     {"ior", {"specular_ior"}},
     {"jensen", {"dipole"}},
     {"location", {"position"}},
-    {"material", {"medium"}},
+    {"material", {"medium", "preset"}},
     {"materials", {"media"}},
     {"mean_free_path", {"subsurface_radius"}},
+    {"medium", {"preset"}},
     {"mesh", {"file"}},
     {"metallic", {"metalness"}},
     {"mfp", {"subsurface_radius"}},
@@ -179,6 +180,12 @@ Names similar_keys(std::string_view name, std::span<const std::string_view> keys
 constexpr std::array<std::string_view, 4> kSingleSections{"camera", "film", "settings",
                                                           "settings.laboratory"};
 
+/// Lists whose elements have these keys.
+struct ListSection {
+  std::string_view section, path;
+};
+constexpr std::array<ListSection, 2> kListSections{{{"medium", "media.NAME."}, {"shape", "shapes.NAME."}}};
+
 /// Paths of the keys with this name, or with it in another program.
 Names paths_of(std::string_view key) {
   Names paths;
@@ -210,17 +217,29 @@ Names abbreviated_path(std::string_view name) {
   return paths.size() == 1 ? paths : Names{};
 }
 
+/// A key by this name, or those that look(name, keys) finds.
+template <class Look>
+Names key_or(std::string_view name, std::span<const std::string_view> keys, const Look& look) {
+  return std::ranges::find(keys, name) != keys.end() ? Names{std::string(name)} : look(name, keys);
+}
+
 /// Paths of keys of media and shapes matching a name at the top level.
 Names paths_in_lists(std::string_view key) {
-  for (const auto& [section, list] :
-       {std::pair("medium", "media.NAME."), std::pair("shape", "shapes.NAME.")}) {
-    const std::span<const std::string_view> keys = section_keys(section);
-    const bool is_there = std::ranges::find(keys, key) != keys.end();
-    Names found = is_there ? Names{std::string(key)} : similar_keys(key, keys);
-    for (std::string& name : found) name.insert(0, list);
+  for (const ListSection& list : kListSections) {
+    Names found = key_or(key, section_keys(list.section), similar_keys);
+    for (std::string& name : found) name.insert(0, list.path);
     if (!found.empty()) return found;
   }
   return {};
+}
+
+/// Paths of all keys of media and shapes with this name, or with it in another program.
+Names same_paths_in_lists(std::string_view key) {
+  Names paths;
+  for (const ListSection& list : kListSections)
+    for (const std::string& name : key_or(key, section_keys(list.section), named_otherwise))
+      paths.push_back(std::string(list.path) + name);
+  return paths;
 }
 
 }  // namespace
@@ -242,8 +261,16 @@ std::string did_you_mean_key(std::string_view name, std::string_view section) {
 }
 
 std::vector<std::string> similar_key_paths(std::string_view name) {
-  const Names paths = paths_of(name);
-  return paths.empty() ? nearest_path(name) : paths;
+  for (const Names& found : {paths_of(name), same_paths_in_lists(name), nearest_path(name)})
+    if (!found.empty()) return found;
+  return {};
+}
+
+const KeyInfo& key_at(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  for (const ListSection& list : kListSections)
+    if (path.starts_with(list.path)) return key_info(list.section, path.substr(dot + 1));
+  return key_info(path.substr(0, dot), path.substr(dot + 1));
 }
 
 std::string did_you_mean_file(const std::string& path) {

@@ -132,7 +132,9 @@ Vec3d Value::triple(const Range& range) const {
 
 Vec3d Value::number_or_triple() const {
   if (node_->kind == Node::Kind::array) return triple();
-  require_kind(Node::Kind::number, "a number or a list of 3 numbers in " + text(info_->range));
+  const std::string expected = "a number or a list of 3 numbers in " + text(info_->range);
+  if (!as_list().empty()) fail_type("has the wrong type", expected);
+  require_kind(Node::Kind::number, expected);
   return Vec3d(number());
 }
 
@@ -142,7 +144,7 @@ Rgb Value::color() const {
   if (node_->kind == Node::Kind::number || node_->kind == Node::Kind::array) return number_or_triple();
   if (const std::optional<Rgb> color = hex_color(require_kind(Node::Kind::string, expected).text))
     return *color;
-  fail("is not a colour", expected);
+  fail_type("is not a colour", expected);
 }
 
 double Value::length(double mm_per_unit) const {
@@ -181,7 +183,8 @@ std::optional<Value> Value::member(std::string_view key, const KeyInfo& info) co
 }
 
 std::vector<Value> Value::list(std::size_t size, const std::string& expected) const {
-  if (require_kind(Node::Kind::array, expected).children.size() != size) fail("has the wrong size", expected);
+  if (node_->kind != Node::Kind::array) fail_type("has the wrong type", expected);
+  if (node_->children.size() != size) fail("has the wrong size", expected);
   return list();
 }
 
@@ -229,6 +232,29 @@ std::string Value::describe_object() const {
   for (std::size_t i = 0; i < std::min(count, kMost); ++i)
     text += (i == 0 ? "'" : ", '") + printable(node_->children[i].key) + '\'';
   return text + (count > kMost ? ", ..." : "");
+}
+
+/// "[0, 0, 90]" for a list of numbers in a string, as in "0,0,90" or "0 0 90"; else empty.
+std::string Value::as_list() const {
+  if (node_->kind != Node::Kind::string) return {};
+  std::string_view rest = node_->text;
+  std::string list;
+  std::size_t count = 0;
+  for (constexpr std::string_view kBetween = ",;x() \t"; !rest.empty(); ++count) {
+    rest.remove_prefix(std::min(rest.find_first_not_of(kBetween), rest.size()));
+    if (rest.empty()) break;
+    const std::string_view word = rest.substr(0, rest.find_first_of(kBetween));
+    if (!is_number_text(word)) return {};
+    list += (count > 0 ? "," : "") + std::string(word);
+    rest.remove_prefix(word.size());
+  }
+  return count > 1 ? '[' + list + ']' : "";
+}
+
+/// Rejects a value of another type, perhaps a list without its brackets.
+void Value::fail_type(const std::string& message, const std::string& expected) const {
+  const std::string list = as_list();
+  fail(message + (list.empty() ? "" : " (did you mean " + list + "?)"), expected);
 }
 
 const Node& Value::require_kind(Node::Kind kind, const std::string& expected) const {

@@ -73,6 +73,8 @@ class Value {
   std::string describe_object() const;
   std::string path_of(std::string_view child) const;
   const Node& require_kind(Node::Kind kind, const std::string& expected) const;
+  std::string as_list() const;
+  [[noreturn]] void fail_type(const std::string& message, const std::string& expected) const;
   Vec3d triple(const Range& range) const;
 
   const Document* document_;

@@ -118,7 +118,10 @@ TEST(ObjAssets, NamesMayBeLatin1) {
 
 // Claim: a mesh without faces is refused, as is a part that is not there. Fails if an empty scene is rendered.
 TEST(ObjAssets, NothingToSeeIsNamed) {
-  EXPECT_EQ(error_of("v 0 0 0\n", "a.obj"), "a.obj: contains no visible mesh (expected a mesh with faces)");
+  EXPECT_EQ(
+      error_of("v 0 0 0\n", "a.obj"),
+      "a.obj: contains no faces (expected an OBJ mesh: lines with v x y z and f 1 2 3, got 1 vertices)");
+  EXPECT_EQ(error_of("", "a.obj"), "a.obj: the file is empty");
   const ObjFolder folder;
   EXPECT_THROW(mesh_of(folder.obj, "blue"), Error);
   EXPECT_EQ(mesh_of(folder.obj, "").mesh.triangles.size(), 4u);  // of the five two are the same

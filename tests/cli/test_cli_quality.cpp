@@ -243,18 +243,30 @@ TEST(CliQuality, DirectStopsInTime) {
   EXPECT_TRUE(contains(done["again_by"], entries)) << done["again_by"];
 }
 
-// Claim: without lights the image is black, so that no error remains to be reached or measured; render says so and succeeds.
-// Source: by hand. Fails if: the options complain of the method that replaces the body's, or settings are chosen.
+// Claim: without lights the image is black, so that no error remains to be reached or measured; render names each option without
+// effect, by every method, once for all frames, and succeeds. Source: by hand. Fails if: the options complain of the method that
+// replaces the body's, settings are chosen, or an option is dropped without a word.
 TEST(CliQuality, NoErrorWithoutLights) {
   const QualityFolder folder;
+  const std::string black = "opaline: warning: the scene has no lights: the image is black\n";
+  const auto unlit = [](const std::string& option) {
+    return "opaline: warning: the scene has no lights, so " + option + " has no effect\n";
+  };
   const std::vector<std::vector<std::string>> choices = {
-      {"--target-error", "1%"}, {"--time-budget", "1s"}, {"--verify"}};
-  for (std::vector<std::string> options : choices) {
-    options.insert(options.end(), {"--set", "lights=[]"});
-    const Outcome outcome = folder.render(options);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "opaline: warning: the scene has no lights: the image is black\n");
-  }
+      {"--target-error", "1%"}, {"--time-budget", "1s"},   {"--verify"},
+      {"--until-error", "1%"},  {"--entry-samples", "64"}, {"--resume", "sums.exr"}};
+  for (const std::vector<std::string>& options : choices)
+    for (const char* method : {"hierarchical", "volume_diffusion", "lambert", "direct", "volume", "auto"}) {
+      std::vector<std::string> words = options;
+      words.insert(words.end(), {"--set", "lights=[]", "--method", method});
+      const Outcome outcome = folder.render(words);
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      EXPECT_EQ(outcome.err, unlit(options[0]) + black) << method;
+    }
+  const Outcome frames = folder.render(
+      {"--set", "lights=[]", "--target-error", "1%", "--verify", "--frames", "1-2"}, "a.##.exr");
+  EXPECT_EQ(frames.exit_code, 0) << frames.err;
+  EXPECT_EQ(frames.err, unlit("--target-error") + unlit("--verify") + black);
 }
 
 // Claim: what makes no sense is exit 2 with what was expected, and nothing is written: values that are no

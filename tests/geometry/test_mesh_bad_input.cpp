@@ -115,7 +115,8 @@ TEST(BadMesh, Stl) {
   expect_errors({
       {"empty.stl", "", "is empty"},
       {"garbage.stl", garbage(5000), "truncated STL file, or not an STL file"},
-      {"short.stl", good.substr(0, 70), "truncated STL file (expected a header of 84 bytes, got 70 bytes)"},
+      {"short.stl", good.substr(0, 70),
+       "truncated STL file, or not an STL file (expected a header of 84 bytes, got 70 bytes)"},
       {"cut.stl", good.substr(0, good.size() - 1), "12 triangles: 684 bytes, got 683"},
       {"none.stl", good.substr(0, 80) + std::string(4, '\0'), "no vertices"},
       {"nan.stl", stl_with(std::numeric_limits<float>::quiet_NaN()), "1 vertex has a coordinate"},

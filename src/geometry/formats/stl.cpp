@@ -66,7 +66,7 @@ SourceMesh join_corners(const std::vector<Vec3f>& corners) {
 
 std::vector<Vec3f> read_binary(const std::string& path, const std::string& bytes) {
   if (bytes.size() < binary_header)
-    throw bad_file(path, "truncated STL file", "a header of 84 bytes",
+    throw bad_file(path, "truncated STL file, or not an STL file", "a header of 84 bytes",
                    std::to_string(bytes.size()) + " bytes");
   const std::size_t triangles = claimed_triangles(bytes);
   const std::size_t needed = binary_size(bytes);

@@ -65,10 +65,12 @@ BodyMemory HierarchicalMethod::memory(const PlanningInput& input, const BodyPlan
 }
 
 double HierarchicalMethod::seconds(const Scene& scene, const BodyPlan& body, const Lighting& lighting) const {
-  constexpr double kSample = 8e-6;       // placed, in the tree
-  constexpr double kGather = 6e-5;       // light from other bodies at a sample
-  constexpr double kGatherAlone = 1e-5;  // the same where there is one body
-  const double gather = bounces_of(scene) == 0 ? 0 : scene.shapes.size() > 1 ? kGather : kGatherAlone;
+  constexpr double kSample = 8e-6;        // placed, in the tree
+  constexpr double kGather = 1.5e-5;      // light from other bodies at a sample
+  constexpr double kGatherPlates = 1e-4;  // the same between plates: their profile is far slower
+  constexpr double kGatherAlone = 4e-6;   // the same where there is one body
+  const double others = body.model.profile.kind == ProfileKind::multipole ? kGatherPlates : kGather;
+  const double gather = bounces_of(scene) == 0 ? 0 : scene.shapes.size() > 1 ? others : kGatherAlone;
   return double(body.samples) * (kSample + kSecondsOfShadowRay * lighting.rays + gather);
 }
 
