@@ -3,10 +3,20 @@
 // scene file.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "opaline/vec3.h"
+
 namespace opaline {
+
+/// Default camera and lights around an asset, in its unit.
+struct AssetDefaults {
+  bool camera = false, lights = false;  ///< false: the asset has its own
+  Vec3d center{};                       ///< centre of the sphere around the asset
+  double radius = 1;
+};
 
 struct ImportedAsset {
   std::string text;                      ///< a scene file, see scenes/README.md
@@ -15,6 +25,7 @@ struct ImportedAsset {
   std::vector<std::string> warnings;     ///< missing files and other changes of the image, a line each
   std::string summary;                   ///< one line
   std::size_t bytes = 0;                 ///< memory of its records during reading
+  AssetDefaults defaults{};
 };
 
 /// True for a file name with an asset's extension, in upper or lower case.
@@ -27,5 +38,9 @@ bool is_asset_name(const std::string& path);
 /// error Error{bad_input} naming the file and the record: missing, broken, or without a triangle
 ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
                            const std::string& material = {});
+
+/// Overrides placing the default camera and lights of the asset's scene.
+/// in    camera: position of the camera in use, for the lights; none: the default one
+std::vector<std::string> placement(const AssetDefaults& defaults, const std::optional<Vec3d>& camera);
 
 }  // namespace opaline
