@@ -113,4 +113,22 @@ void add_defaults(AssetScene& scene) {
     add_lights(scene);
 }
 
+std::vector<std::string> placement(const AssetDefaults& defaults, const std::optional<Vec3d>& camera) {
+  AssetScene scene;
+  scene.center = defaults.center;
+  scene.radius = defaults.radius;
+  add_camera(scene);
+  std::vector<std::string> texts;
+  if (defaults.camera)
+    for (const char* key : {"position", "look_at"})
+      texts.push_back("camera." + std::string(key) + '=' + scene.camera[key].dump());
+  if (camera) scene.camera["position"] = triple_json(*camera);
+  if (!defaults.lights) return texts;
+  add_lights(scene);
+  for (const Json& light : scene.lights)
+    for (const char* key : {"center", "radius"})
+      texts.push_back("lights." + light["name"].get<std::string>() + '.' + key + '=' + light[key].dump());
+  return texts;
+}
+
 }  // namespace opaline

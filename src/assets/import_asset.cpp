@@ -93,9 +93,14 @@ ImportedAsset import_asset(const std::string& path, const std::string& mesh_path
   try {
     std::string text = scene_text(scene, std::filesystem::path(path).filename().string());
     std::string summary = summary_of(scene, own_camera, own_lights);
-    return {std::move(text),           std::move(scene.translated), std::move(scene.not_carried),
-            std::move(scene.warnings), std::move(summary),          scene.bytes,
-            std::move(scene.textures)};
+    return {std::move(text),
+            std::move(scene.translated),
+            std::move(scene.not_carried),
+            std::move(scene.warnings),
+            std::move(summary),
+            scene.bytes,
+            std::move(scene.textures),
+            {!own_camera, !own_lights, scene.center, scene.radius}};
   } catch (const Json::exception&) {
     throw bad_file(path, "contains a name that is not UTF-8", "names in UTF-8");
   }

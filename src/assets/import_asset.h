@@ -7,9 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "opaline/vec3.h"
+
 namespace opaline {
 
 class TextureFile;
+
+/// Default camera and lights around an asset, in its unit.
+struct AssetDefaults {
+  bool camera = false, lights = false;  ///< false: the asset has its own
+  Vec3d center{};                       ///< centre of the sphere around the asset
+  double radius = 1;
+};
 
 struct ImportedAsset {
   std::string text;                      ///< a scene file, see scenes/README.md
@@ -19,6 +28,7 @@ struct ImportedAsset {
   std::string summary;                   ///< one line, without the warnings
   std::size_t bytes = 0;                 ///< memory of its records during reading
   std::vector<std::shared_ptr<const TextureFile>> textures = {};  ///< opened already: the scene reuses them
+  AssetDefaults defaults{};
 };
 
 /// True for a file name with an asset's extension, in upper or lower case.
@@ -31,5 +41,9 @@ bool is_asset_name(const std::string& path);
 /// error Error{bad_input} naming the file and the record: missing, broken, or without a triangle
 ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
                            const std::string& material = {});
+
+/// Overrides placing the default camera and lights of the asset's scene.
+/// in    camera: position of the camera in use, for the lights; none: the default one
+std::vector<std::string> placement(const AssetDefaults& defaults, const std::optional<Vec3d>& camera);
 
 }  // namespace opaline

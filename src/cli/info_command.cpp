@@ -4,6 +4,7 @@
 #include "input/load_scene.h"
 #include "plan/choose_models.h"
 #include "plan/make_plan.h"
+#include "plan/placement_warnings.h"
 
 namespace opaline {
 
@@ -14,6 +15,7 @@ void info_command(const InfoArguments& arguments) {
   const Plan plan = make_plan(scene, world);
   warn_of_unused_media(arguments.log, arguments.overrides, scene);
   print_plan(arguments.log, scene, world, plan);
+  for (const std::string& text : placement_warnings(scene, world, plan)) print_warning(arguments.log, text);
   print_plates(arguments.log, compare_plates(scene, plan));
 }
 

@@ -26,6 +26,7 @@
 #include "plan/expected_seconds.h"
 #include "plan/make_plan.h"
 #include "plan/picture_warnings.h"
+#include "plan/placement_warnings.h"
 #include "plan/shapes_inside.h"
 #include "render/layers.h"
 #include "render/render.h"
@@ -275,6 +276,8 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
   for (const std::string& text : picture_warnings(session.scene(), session.world(), shading.picture.image))
     print_warning(arguments.log, text);
   for (const std::string& text : model_warnings(session.plan())) print_warning(arguments.log, text);
+  for (const std::string& text : placement_warnings(session.scene(), session.world(), session.plan()))
+    print_warning(arguments.log, text);
   for (const std::string& text :
        warnings_of_shapes_inside(session.scene(), session.world(), session.rays(), session.plan()))
     print_warning(arguments.log, text);

@@ -71,9 +71,9 @@ std::string settings_error_text(const Summary& summary) {
 std::string model_error_text(const Summary& summary) {
   std::string text;
   if (summary.model_error)
-    text = fmt::format(
-        "model about {} (expected against random walks{}, rms, worst body and channel)",
-        short_percent(*summary.model_error), summary.leaves_out_reentry ? " without re-entry" : "");
+    text = fmt::format("model about {} (expected against random walks{}, rms, worst body and channel)",
+                       short_percent(*summary.model_error),
+                       summary.leaves_out_reentry ? " without re-entry" : "");
   if (summary.unknown_models.empty()) return text;
   const std::size_t count = summary.unknown_models.size();
   return text + (text.empty() ? "model: unknown for " : "; unknown for ") +

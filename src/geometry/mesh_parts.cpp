@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "geometry/winding_number.h"
+
 namespace opaline {
 namespace {
 
@@ -13,12 +15,6 @@ using Kind = MeshParts::Kind;
 /// Six times the volume of the tetrahedron below the triangle.
 double signed_volume(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& origin) {
   return dot(a - origin, cross(b - origin, c - origin));
-}
-
-/// Solid angle of a triangle seen from zero, signed, after van Oosterom & Strackee 1983.
-double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const double la = length(a), lb = length(b), lc = length(c);
-  return 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
 }
 
 /// For each rim edge the first edge of its rim: of the same part, and connected.

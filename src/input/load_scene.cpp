@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <vector>
 
 #include "assets/import_asset.h"
 #include "core/input_file.h"
+#include "geometry/world.h"
 #include "image/texture_file.h"
 #include "input/deprecated_spellings.h"
 #include "input/edited_text.h"
@@ -194,15 +196,70 @@ void forget_places(Scene& scene) {
   forget(scene.lights);
 }
 
-/// error without line and column, as the text is generated
-Scene parse_asset(const std::string& text, const std::string& path, std::span<const std::string> overrides,
-                  int frame) {
+/// Runs a reader of a generated text, unknown to the user: errors have no line and column.
+template <class Read>
+auto without_lines(const std::string& path, const Read& read) {
   try {
-    return parse_scene(text, path, overrides, frame);
+    return read();
   } catch (const Error& failure) {
     if (failure.file != path) throw;
     throw Error(failure.kind, path, 0, 0, failure.message, failure.expected, failure.got);
   }
+}
+
+/// Position of the scene's camera, scene units; none: missing or invalid.
+std::optional<Vec3d> camera_position(const Document& document) {
+  const Node* const camera = find_member(document.root, "camera");
+  const Node* const position = camera != nullptr ? find_member(*camera, "position") : nullptr;
+  if (position == nullptr || position->children.size() != 3) return {};
+  Vec3d point;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (position->children[i].kind != Node::Kind::number) return {};
+    point[i] = position->children[i].number;
+  }
+  return point;
+}
+
+bool is_fitted(const Document& document) {
+  const Node* const shapes = find_member(document.root, "shapes");
+  return shapes != nullptr && std::ranges::any_of(shapes->children, [](const Node& shape) {
+           return find_member(shape, "fit_size") != nullptr;
+         });
+}
+
+/// Sphere around all shapes, in scene units.
+void enclose_shapes(const Scene& scene, AssetDefaults& defaults) {
+  const World world = make_world(scene);
+  Bounds box;
+  for (const Bounds& of_shape : world.boxes) {
+    box.low = component_min(box.low, of_shape.low);
+    box.high = component_max(box.high, of_shape.high);
+  }
+  const Vec3d middle = .5 * (box.low + box.high);
+  double radius = 0;
+  for (const Mesh& mesh : world.meshes)
+    for (const Vec3d& p : mesh.positions) radius = std::max(radius, length(out_of_world(world, p) - middle));
+  defaults.center = middle / scene.mm_per_unit;
+  defaults.radius = radius / scene.mm_per_unit;
+}
+
+/// Warning of an asset's own camera or lights, placed for its size without a fit_size; empty: none.
+std::string unfitted(const AssetDefaults& defaults, std::span<const std::string> overrides) {
+  const auto sets = [&](const auto& is_wanted) {
+    return std::ranges::any_of(
+        overrides, [&](const std::string& text) { return is_wanted(text.substr(0, text.find('='))); });
+  };
+  if ((defaults.camera && defaults.lights) ||
+      !sets([](const std::string& key) { return key.ends_with(".fit_size"); }) ||
+      sets([](const std::string& key) { return key.starts_with("camera"); }))
+    return {};
+  return fmt::format(
+      "fit_size moves and scales a mesh alone: the {} of the asset stay{}; --set mm_per_unit=... scales all "
+      "of them",
+      defaults.camera   ? "lights"
+      : defaults.lights ? "camera"
+                        : "camera and lights",
+      defaults.lights ? "s" : "");
 }
 
 }  // namespace
@@ -210,23 +267,37 @@ Scene parse_asset(const std::string& text, const std::string& path, std::span<co
 Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
   if (!is_asset_name(path)) return parse_scene(read_scene_text(path), path, overrides, frame);
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
-  Scene scene = parse_asset(asset.text, path, overrides, frame);
+  std::vector<std::string> all(overrides.begin(), overrides.end());
+  if (!overrides.empty()) {
+    const std::vector<std::string> placed =
+        without_lines(path, [&] { return placed_defaults(asset, path, overrides); });
+    all.insert(all.begin(), placed.begin(), placed.end());
+  }
+  Scene scene = without_lines(path, [&] { return parse_scene(asset.text, path, all, frame); });
   scene.translation = asset.summary;
   scene.warnings.insert(scene.warnings.begin(), asset.warnings.begin(), asset.warnings.end());
   scene.asset_bytes = asset.bytes;
-  const auto sets = [&](const auto& is_wanted) {
-    return std::ranges::any_of(
-        overrides, [&](const std::string& text) { return is_wanted(text.substr(0, text.find('='))); });
-  };
-  if (sets([](const std::string& key) { return key.ends_with(".fit_size"); }) &&
-      !sets([](const std::string& key) { return key.starts_with("camera"); }))
-    scene.warnings.push_back(
-        "fit_size moves and scales a mesh alone: the camera and lights of the asset stay; "
-        "--set mm_per_unit=... scales all of them");
+  if (std::string warning = unfitted(asset.defaults, overrides); !warning.empty())
+    scene.warnings.push_back(std::move(warning));
   // Each warning is also among the parts not carried.
   if (asset.not_carried.size() > asset.warnings.size()) scene.translation += "; opaline import lists all";
   forget_places(scene);
   return scene;
+}
+
+std::vector<std::string> placed_defaults(const ImportedAsset& asset, const std::string& path,
+                                         std::span<const std::string> overrides) {
+  AssetDefaults defaults = asset.defaults;
+  if (!defaults.camera && !defaults.lights) return {};
+  constexpr int kFirstFrame = std::numeric_limits<int>::min();
+  Document before = merged_document(asset.text, path, {}, kFirstFrame),
+           now = merged_document(asset.text, path, overrides, kFirstFrame);
+  if (now.root.kind != Node::Kind::object) return {};
+  resolve_keyed_values(now);
+  std::optional<Vec3d> camera = camera_position(now);
+  if (defaults.camera && camera == camera_position(before)) camera.reset();
+  if (is_fitted(now)) enclose_shapes(parse_scene(asset.text, path, overrides), defaults);
+  return placement(defaults, camera);
 }
 
 std::string read_scene_text(const std::string& path) {

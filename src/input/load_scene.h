@@ -7,9 +7,17 @@
 #include <string>
 #include <string_view>
 
+#include "assets/import_asset.h"
 #include "opaline/scene.h"
 
 namespace opaline {
+
+/// Overrides, to precede the given ones, placing an asset's default camera around shapes with a fit_size, and
+/// its default lights for the camera in use, at its first key. Empty: it has its own camera and lights.
+/// in    path: of the asset
+/// error as merged_scene; as parse_scene and make_mesh if a shape has a fit_size
+std::vector<std::string> placed_defaults(const ImportedAsset& asset, const std::string& path,
+                                         std::span<const std::string> overrides);
 
 /// Text of a scene file.
 /// error Error{bad_input}: no such file, a folder, a mesh, more than 64 MiB

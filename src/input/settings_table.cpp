@@ -236,7 +236,8 @@ std::span<const Member<Settings>> settings_members() {
           "of 0.45 diffuse mean free paths; smaller cells are slower and more accurate"),
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "", {walks},
-          "`volume` and `volume_diffusion`: re-entry of outgoing light into the same body, as in concavities, "
+          "`volume` and `volume_diffusion`: re-entry of outgoing light into the same body, as in "
+          "concavities, "
           "for `volume` of reflected light too; `false`: such light is lost. Other methods: `bounces`"),
       member<&Settings::bounces>(
           "bounces", whole_number, "", {0, 1}, "1 if one surface can light another", {},

@@ -40,7 +40,7 @@ class BounceSeries {
   /// Sum of all further bounces over the last one, as a geometric series.
   double rest() const { return ratio() / (1 - ratio()); }
   bool has_converged() const {
-    constexpr double kLeast = .03;  // of the bounced light, which is itself a part of all light
+    constexpr double kLeast = .03;  // share of bounced light, itself a part of all light
     return !(last_ > 0) || (previous_ > 0 && last_ * rest() < kLeast * all_);
   }
 

@@ -2,6 +2,7 @@
 #include "view/scene_edits.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -103,11 +104,18 @@ bool is_within(const std::string& override, const std::string& path) {
 }  // namespace
 
 SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given, std::vector<int> frames)
-    : file_(file), text_(read_scene_text(file)), given_(std::move(given)), frames_(std::move(frames)) {
+    : file_(file), given_(std::move(given)), frames_(std::move(frames)) {
+  if (is_asset_name(file)) {
+    ImportedAsset asset = import_asset(file, std::filesystem::path(file).filename().string());
+    placed_ = placed_defaults(asset, file, given_);
+    text_ = std::move(asset.text);
+  } else {
+    text_ = read_scene_text(file);
+  }
   if (!frames_.empty()) frame_ = frames_.front();
   scene_ = read({}, {}, frame_);
   if (!frames_.empty()) return;
-  const auto [first, last] = key_range(Json::parse(merged_scene(text_, file_, given_)));
+  const auto [first, last] = key_range(Json::parse(merged_scene(text_, file_, all_overrides({}))));
   if (last <= first || last - first >= kMostKeyedFrames) return;
   frames_.resize(std::size_t(last - first + 1));
   std::iota(frames_.begin(), frames_.end(), first);
@@ -125,8 +133,7 @@ Scene SceneEdits::parsed(const Edits& edits, const Look& look) const {
 
 /// Parses with the scene's own camera as well: a free camera must not hide an invalid edit.
 Scene SceneEdits::read(const Edits& edits, const Look& look, int frame) const {
-  Edits all = given_;
-  all.insert(all.end(), edits.begin(), edits.end());
+  Edits all = all_overrides(edits);
   Scene scene = parse_scene(text_, file_, all, frame);
   check_pixels(scene);
   if (!look) return scene;
@@ -138,7 +145,7 @@ Scene SceneEdits::read(const Edits& edits, const Look& look, int frame) const {
 /// Changes one key of a keyed value.
 Assignment SceneEdits::with_key(const Assignment& change) const {
   if (frames_.empty() || is_keyed(Json::parse(change.value, nullptr, false))) return change;
-  const Json scene = Json::parse(merged_scene(text_, file_, overrides()));
+  const Json scene = Json::parse(merged_scene(text_, file_, all_overrides(edits())));
   const Json* const value = value_at(scene, change.path);
   if (value == nullptr || !is_keyed(*value)) return change;
   return {change.path + ".keyed." + std::to_string(frame_), change.value};
@@ -247,21 +254,33 @@ std::optional<int> SceneEdits::frame() const {
 
 std::optional<Scene> SceneEdits::reference() const {
   if (frames_.empty()) return {};
-  return parse_scene(text_, file_, overrides(), scene_.settings.reference_frame);
+  return parse_scene(text_, file_, all_overrides(edits()), scene_.settings.reference_frame);
 }
 
+SceneEdits::Edits SceneEdits::all_overrides(const Edits& edits) const {
+  Edits all = placed_;
+  all.insert(all.end(), given_.begin(), given_.end());
+  all.insert(all.end(), edits.begin(), edits.end());
+  return all;
+}
+
+// Without edits of the camera or sizes, the command places the defaults as placed_.
 std::vector<std::string> SceneEdits::overrides() const {
-  Edits all = given_;
-  all.insert(all.end(), edits().begin(), edits().end());
+  const auto may_place = [](const std::string& edit) {
+    return edit.find("camera") != edit.npos || edit.find("fit_size") != edit.npos;
+  };
+  Edits all = all_overrides(edits());
+  if (std::ranges::none_of(edits(), may_place))
+    all.erase(all.begin(), all.begin() + std::ptrdiff_t(placed_.size()));
   return all;
 }
 
 std::string SceneEdits::json() const {
-  return merged_scene(text_, file_, overrides(), frame_);
+  return merged_scene(text_, file_, all_overrides(edits()), frame_);
 }
 
 std::string SceneEdits::file_text() const {
-  return edited_scene(text_, file_, overrides());
+  return edited_scene(text_, file_, all_overrides(edits()));
 }
 
 }  // namespace opaline

@@ -63,6 +63,7 @@ class SceneEdits {
   bool can_redo() const { return at_ + 1 < history_.size(); }
   /// Edits as `--set` takes them, without those of the command line.
   const std::vector<std::string>& edits() const { return history_[at_]; }
+  /// Overrides of a command making this scene from the file.
   std::vector<std::string> overrides() const;
 
   /// All values of the scene as JSON, keyed values at the current frame.
@@ -75,10 +76,12 @@ class SceneEdits {
   using Look = std::optional<LookFrom>;
   Scene parsed(const Edits& edits, const Look& look) const;
   Scene read(const Edits& edits, const Look& look, int frame) const;
+  Edits all_overrides(const Edits& edits) const;
   Assignment with_key(const Assignment& change) const;
   void go_to(std::size_t place);
 
   std::string file_, text_;
+  Edits placed_;  // placement of an asset's default camera and lights
   Edits given_;
   std::vector<Edits> history_{Edits{}};
   std::size_t at_ = 0;

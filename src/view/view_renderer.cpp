@@ -12,6 +12,7 @@
 #include "opaline/error.h"
 #include "plan/expected_error.h"
 #include "plan/picture_warnings.h"
+#include "plan/placement_warnings.h"
 #include "plan/shapes_inside.h"
 #include "subsurface/method.h"
 #include "view/lit_anew.h"
@@ -259,6 +260,8 @@ void ViewRenderer::report(const Wanted& wanted, const Image& image, double error
     for (std::string& text : method_of(body.plan.method).warnings(body, session_->world().unit))
       report.warnings.push_back(std::move(text));
   for (std::string& text : model_warnings(session_->plan())) report.warnings.push_back(std::move(text));
+  for (std::string& text : placement_warnings(wanted.scene, session_->world(), session_->plan()))
+    report.warnings.push_back(std::move(text));
   for (std::string& text :
        warnings_of_shapes_inside(wanted.scene, session_->world(), session_->rays(), session_->plan()))
     report.warnings.push_back(std::move(text));

@@ -323,6 +323,44 @@ TEST(CliRender, PlansTheMemoryOfEnvironments) {
 }
 #endif
 
+// Claim: `render` and `info` report flush faces of two media, and bodies in a closed opaque box: from outside of it, or without a light
+// inside; an open box and a lit room are none. Source: placement_warnings.h. Fails if: speckle and black images are silent.
+TEST(CliRender, PlacementsAreReported) {
+  const ScratchFolder folder;
+  const auto warnings_of = [&](const std::string& other, const std::string& camera,
+                               const std::string& light) {
+    put_bytes(folder.file("a.json"),
+              R"({"media": {"m": {"preset": "marble"}, "n": {"preset": "skin1"}}, "shapes": [
+        {"name": "cube", "box": {"low": [0, 0, 0], "high": [20, 20, 20]}, "medium": "m"},
+        {"name": "ball", "sphere": {"center": [-15, 8, 8], "radius": 8}, "medium": "n"}, )" +
+                  other + R"(], "lights": [{"type": "point", "position": )" + light +
+                  R"(, "intensity": 9000}], "camera": {"position": )" + camera +
+                  R"(, "look_at": [10, 8, 0]}, "film": {"resolution": [16, 16]},
+        "settings": {"bounces": 0, "samples": 500}})");
+    const std::string info = run_program({"info", folder.file("a.json")}).err,
+                      render = run_program({"render", folder.file("a.json"), "-o", folder.file("a.exr"),
+                                            "--method", "hierarchical"})
+                                   .err;
+    for (const char* text : {"have coincident faces", "inside the closed opaque"})
+      EXPECT_EQ(contains(info, text), contains(render, text)) << info << render;
+    return info;
+  };
+  const std::string
+      flush = R"({"name": "b", "box": {"low": [5, -5, 5], "high": [15, 15, 20]}, "medium": "n"})",
+      box = R"({"name": "b", "box": {"low": [-30, -5, -5], "high": [90, 90, 90]}})",
+      part = R"({"name": "b", "box": {"low": [-5, -5, -5], "high": [25, 25, 12]}})",
+      side = R"({"name": "b", "quad": {"corner": [-5, -5, 25], "u": [30, 0, 0], "v": [0, 30, 0]}})",
+      near = "[10, 30, 80]", far = "[10, 30, 180]", inside = "[30, 60, 60]", outside = "[30, 160, 60]";
+  EXPECT_TRUE(contains(warnings_of(flush, near, inside), "the shapes 'cube' and 'b' have coincident faces"));
+  EXPECT_TRUE(contains(warnings_of(box, far, inside),
+                       "cube, ball: inside the closed opaque shape 'b'; the camera is outside"));
+  EXPECT_TRUE(contains(warnings_of(box, near, outside),
+                       "cube, ball: inside the closed opaque shape 'b'; all lights are outside"));
+  EXPECT_FALSE(contains(warnings_of(box, near, inside), "inside the closed"));
+  EXPECT_FALSE(contains(warnings_of(part, far, inside), "inside the closed"));
+  EXPECT_FALSE(contains(warnings_of(side, far, inside), "inside the closed"));
+}
+
 // Claim: the exposure brightens the PNG alone. Source: scene.h. Fails if: it is applied to the EXR, or not at
 // all.
 TEST(CliRender, ExposureIsForThePng) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Edits of a scene: each a step that can be taken back, and a file that can be read again.
+#include "../assets/asset_test.h"
 #include "opaline/error.h"
 #include "view_client.h"
 
@@ -98,6 +99,34 @@ TEST(SceneEdits, OwnCamera) {
   edits.look({"[10, 20, 90]", "[1, 8, 0]"});
   edits.look_back();
   EXPECT_EQ(edits.scene().camera.position, (Vec3d{0, 40, 120}));
+}
+
+// Claim: the default lights of an asset stay where the command line's camera places them, whatever the page does to the camera or
+// the size; the page's command and its saved file make the same lights, and the command names them only where it would place
+// others. Source: scene_edits.h. Fails if: an edit or its command lights the asset for another camera.
+TEST(SceneEdits, DefaultLightsOfAssetsStay) {
+  const ScratchFolder folder;
+  const std::string file = folder.file("a.glb");
+  put_bytes(file, asset_test::cube_asset().glb());
+  for (const Words& given : {Words{}, Words{"camera.position=[-3, -4, -6]"}}) {
+    const std::vector<Light> lights = load_scene(file, given).lights;
+    SceneEdits edits(file, given);
+    EXPECT_EQ(edits.scene().lights, lights);
+    edits.set(one("film.exposure", "1"));
+    EXPECT_EQ(edits.overrides().size(), given.size() + 1);
+    edits.look({"[9, 2, -5]", "[0, 0, 0]"});
+    EXPECT_EQ(edits.scene().lights, lights);
+    EXPECT_EQ(edits.overrides().size(), given.size() + 1);
+    edits.keep_look();
+    for (const SetValues& change : {one("camera.up", "[0, 1, .1]"), one("shapes.0.fit_size", "20")}) {
+      edits.set(change);
+      EXPECT_EQ(edits.scene().lights, lights);
+      const Scene repeated = load_scene(file, edits.overrides());
+      EXPECT_EQ(repeated.lights, lights);
+      EXPECT_EQ(repeated.camera, edits.scene().camera);
+      EXPECT_EQ(parse_scene(edits.file_text(), folder.file("a.json")).lights, lights);
+    }
+  }
 }
 
 // Claim: an edit of a value with keys sets its key at the frame that is shown, and all others stay, in the saved file,
