@@ -40,6 +40,7 @@ void count(RayCounter& counter, std::size_t rays, const Trace& trace) {
 namespace {
 
 constexpr std::size_t kBatch = 256;
+constexpr float kFlat = 1 - 1e-6f;  // cosine of vertex normals equal to the triangle's but for rounding
 
 RTCBuildQuality quality_of(RayBuild build) {
   return build == RayBuild::quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
@@ -138,7 +139,37 @@ SurfacePoint RayScene::surface_point(std::uint32_t mesh, std::uint32_t triangle,
   const Vec3f normal = a.normal * (1 - u - v) + b.normal * u + c.normal * v;
   SurfacePoint point = oriented_point(a.position + ab * u + ac * v, ab, ac, view.faceted ? nullptr : &normal);
   point.offset = offset(mesh, point.position);
+  point.mesh = mesh, point.triangle = triangle;
+  point.u = u, point.v = v;
   return point;
+}
+
+float RayScene::tilt(const SurfacePoint& point) const {
+  if (point.mesh == SurfacePoint::kNoMesh || meshes_[point.mesh].faceted) return -1;
+  const MeshView& view = meshes_[point.mesh];
+  float cosine = 1;
+  for (const std::uint32_t corner : view.triangles[point.triangle])
+    cosine = std::min(cosine, std::abs(dot(view.vertices[corner].normal, point.geometric)));
+  return cosine > kFlat ? -1 : std::sqrt(1 - cosine * cosine);
+}
+
+Vec3f RayScene::lift(const SurfacePoint& point) const {
+  const MeshView& view = meshes_[point.mesh];
+  const auto& corners = view.triangles[point.triangle];
+  const std::array<float, 3> weights{1 - point.u - point.v, point.u, point.v};
+  Vec3f position, normal;
+  for (std::size_t k = 0; k < 3; ++k) {
+    position += view.vertices[corners[k]].position * weights[k];
+    normal += view.vertices[corners[k]].normal * weights[k];
+  }
+  const float side = dot(normal, point.geometric) < 0 ? -1.0f : 1.0f;  // -1: the back of a sheet
+  Vec3f lift;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vertex& vertex = view.vertices[corners[k]];
+    const Vec3f outward = vertex.normal * side;
+    lift += outward * (weights[k] * std::max(0.0f, dot(vertex.position - position, outward)));
+  }
+  return lift;
 }
 
 float RayScene::offset(std::uint32_t mesh, const Vec3f& p) const {

@@ -61,9 +61,19 @@ class RayScene {
   /// Sets far < 0 for each ray blocked between near and far.
   void occluded(std::span<Ray> rays) const;
 
-  /// Geometry at a point of a triangle, from the single-precision vertices of the ray structure; sets the
-  /// offset.
+  /// Geometry at a point of a triangle, from the single-precision vertices of the ray structure; sets all
+  /// members.
   SurfacePoint surface_point(std::uint32_t mesh, std::uint32_t triangle, float u, float v) const;
+
+  /// Sine of the largest angle between the normals of a triangle and of its vertices. Neighbouring triangles
+  /// may block rays flatter than this, although the smooth surface of the vertex normals does not. -1 on
+  /// facets and flat triangles, and for points without a mesh.
+  float tilt(const SurfacePoint& point) const;
+  /// Displacement from a point to the smooth surface, on the side of the geometric normal: the interpolated
+  /// projections onto the tangent planes of the vertices, zero for a plane below the point.
+  /// in    point: with a tilt
+  /// from  Hanika 2021, Hacking the shadow terminator
+  Vec3f lift(const SurfacePoint& point) const;
 
   /// Offset of a ray's origin from the surface of a mesh, along the geometric normal: 2^-18 of the mesh's
   /// diagonal, more where floats far from the middle of the world are coarser.

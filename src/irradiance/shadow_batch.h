@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -71,6 +72,8 @@ class ShadowBatch {
   /// start among them; `lobe` as in for_each_ray.
   void add(const SurfacePoint& point, std::uint64_t index, std::uint64_t first = 0,
            const Lobe* lobe = nullptr) {
+    tilt_.reset();
+    lift_.reset();
     std::array<double, 2> shift{};
     if (!is_delta(lights_[0]))
       shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
@@ -138,11 +141,14 @@ class ShadowBatch {
   static constexpr std::size_t kFewestOfEnvironment = 32;  // rays: a ratio of sums over fewer is biased
   // Minimum pools of neighbouring points, and rays of a pool, for a prediction of visibility.
   static constexpr std::size_t kFewestPools = 4, kFewestOfTogether = 256;
-  static constexpr float kRounding = 1e-4f;  // rounding of a sum of a few floats, less one of them
+  static constexpr float kBeforeLight = 0.9999f;  // part of the way to the light
+  static constexpr float kGrazing = 0.3f;         // cosine of steeper rays: always from the triangle
+  static constexpr float kRounding = 1e-4f;       // rounding of a sum of a few floats, less one of them
 
   void carry(const SurfacePoint& point, const LightSample& sample, const std::array<float, 3>& weights) {
-    const float cosine = dot(point.normal, sample.direction);
-    const bool is_above = cosine > 0 && dot(point.geometric, sample.direction) > 0;
+    const float cosine = dot(point.normal, sample.direction), height = dot(point.geometric, sample.direction);
+    const bool is_lifted = cosine > 0 && height < kGrazing && is_lifted_at(point, height);
+    const bool is_above = cosine > 0 && (height > 0 || is_lifted);
     const float transmitted =
         is_above && eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f;
     bool is_carried = false;
@@ -153,8 +159,30 @@ class ShadowBatch {
     if (keeps_directions_) directions_.push_back(sample.direction);
     if (is_carried) {
       const Vec3f origin = point.position + point.geometric * rays_.offset(point);
-      shadow_.push_back({origin, sample.direction, sample.distance * 0.9999f});
+      shadow_.push_back(is_lifted ? lifted_ray(origin, *lift_, sample)
+                                  : Ray(origin, sample.direction, sample.distance * kBeforeLight));
     }
+  }
+
+  // True if a ray with this cosine to the geometric normal of the last point begins on the smooth surface
+  // (README.md). Light passes through no other surface: the way from the point to the ray's origin is free.
+  bool is_lifted_at(const SurfacePoint& point, float height) {
+    if (!tilt_) tilt_ = rays_.tilt(point);
+    if (height >= *tilt_) return false;
+    if (!lift_) {
+      lift_ = rays_.lift(point);
+      const Vec3f offset = point.geometric * rays_.offset(point);
+      Ray way(point.position + offset, *lift_ + offset, 1);
+      if (*lift_ != Vec3f()) rays_.occluded({&way, 1});
+      if (way.far < 0) lift_ = Vec3f();
+    }
+    return *lift_ != Vec3f();
+  }
+
+  // To the same point of the light as without the lift.
+  static Ray lifted_ray(const Vec3f& origin, const Vec3f& lift, const LightSample& sample) {
+    if (std::isinf(sample.distance)) return {origin + lift, sample.direction};
+    return {origin + lift, sample.direction * sample.distance - lift, kBeforeLight};
   }
 
   // Neighbours in the order of a draw are similar: they alternate between the halves of a point's samples.
@@ -382,6 +410,9 @@ class ShadowBatch {
   float mean_transmitted_;               // approximate transmittance of the boundary
   std::vector<LightTree::Drawn> drawn_;
   bool scattered_ = false, keeps_directions_ = false, shares_shadows_ = false;
+  // RayScene::tilt at the last point, and its lift, zero if blocked; none: not needed yet.
+  std::optional<float> tilt_;
+  std::optional<Vec3f> lift_;
   std::vector<float> carried_;
   /// One sample of many lights: its unoccluded contribution over its probability, and the mean of that over
   /// all draws of the sample.

@@ -49,8 +49,9 @@ bool may_shadow(std::span<const MeshKeys> meshes, std::uint32_t mesh, const Body
                 const Light& light, double unit) {
   if (std::ranges::find(group.meshes, mesh) != group.meshes.end()) return true;
   Ball target = ball_around(meshes, group);
-  // Includes the ray offset, and the search for the surface beside a sample.
-  target.radius = 1.01 * target.radius + 3 * group.spacing / unit;
+  // Includes the lift to the smooth surface (to at most 1.09 radii, for a tessellated sphere), the ray offset,
+  // and the search for the surface beside a sample.
+  target.radius = 1.1 * target.radius + 3 * group.spacing / unit;
   const Ball blocker{meshes[mesh].center, meshes[mesh].radius};
   const LightExtent source = extent(light);
   if (source.center) return hull_meets(target, {*source.center, source.radius}, blocker);

@@ -12,7 +12,7 @@ namespace {
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kSamplesVersion = 2, kCutSurfaceVersion = 2, kCarriedVersion = 3,
-                        kTransferVersion = 4, kTransmittedVersion = 1, kWalkedProfileVersion = 1;
+                        kTransferVersion = 5, kTransmittedVersion = 1, kWalkedProfileVersion = 1;
 
 }  // namespace
 
@@ -91,7 +91,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 
 StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes,
                       std::span<const Light> lights) {
-  KeyBuilder key("surfaces in their light", 4);
+  KeyBuilder key("surfaces in their light", 5);
   key.add(settings_in_key(KeyedStage::surfaces, input.scene));
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
   const auto add_value = [&key](const auto& value, const auto&, SurfacePart) { key.add(value); };

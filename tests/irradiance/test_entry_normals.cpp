@@ -24,7 +24,7 @@ double entered_flux(const LitWorld& lit, const std::vector<SurfaceSample>& sampl
 }
 
 // Claim: by the triangles' normals as much light enters a mesh as its shadow holds. Source: a cube of edge 2 in light
-// from above; normals that turn from corner to corner give .7 of it at its corners. Tolerance: .5 %, for 4000 samples
+// from above; normals that turn from corner to corner also light the upper half of its sides. Tolerance: .5 %, for 4000 samples
 // without area of their own. Fails if: cosines are of interpolated normals.
 TEST(EntryNormals, OfTrianglesLetInWhatArrives) {
   Mesh mesh;
@@ -37,7 +37,7 @@ TEST(EntryNormals, OfTrianglesLetInWhatArrives) {
   const LitWorld lit(world_of_mesh(mesh));
   const std::vector<SurfaceSample> samples = sample_surface({lit.world, {{0}}, 4000}).samples;
   EXPECT_NEAR(entered_flux(lit, samples, true), 4, .02);
-  EXPECT_LT(entered_flux(lit, samples, false), 3.5);
+  EXPECT_GT(entered_flux(lit, samples, false), 5);
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ NearFieldMeans::NearFieldMeans(const NearKernel& kernel, std::span<const Surface
                                std::span<const std::uint32_t> chosen, std::span<const int> drawn)
     : kernel_(kernel), count_(chosen.size()), end_((count_ + kAtOnce - 1) / kAtOnce * kAtOnce) {
   for (std::size_t m = 0; m < count_; ++m) {
-    const auto& [position, normal, geometric, offset] = points[chosen[m]];
+    const SurfacePoint& point = points[chosen[m]];
+    const Vec3f &position = point.position, &normal = point.normal;
     x_[m] = position.x, y_[m] = position.y, z_[m] = position.z;
     nx_[m] = normal.x, ny_[m] = normal.y, nz_[m] = normal.z;
     if (!drawn.empty()) drawn_[m] = float(drawn[m]);
@@ -93,7 +94,7 @@ void NearFieldMeans::take_close(const IrradianceLattice::Cell& cell, const Box& 
   close_areas_.resize(n + cell.points.size());
   close_entered_.resize(n + cell.points.size());
   for (std::size_t i = 0; i < cell.points.size(); ++i) {
-    const auto& [position, normal, geometric, offset] = cell.points[i];
+    const Vec3f &position = cell.points[i].position, &geometric = cell.points[i].geometric;
     if (gap(position, position) > square) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       close_coordinates_[axis][n] = position[axis];
