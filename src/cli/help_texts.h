@@ -35,7 +35,7 @@ opaline applies these options first and then each --set in order. The last value
 
 --target-error is the mean relative error of the diffuse light over the translucent pixels, in the worst channel. It
 excludes antialiasing; set --spp yourself. With volume_diffusion, by --method or by auto for all bodies, the error is
-measured against --method volume without settings.reenter and includes the model error, bounded by the plan's expected
+measured against --method volume and includes the model error, bounded by the plan's expected
 model error. If the target is below the least error that opaline can promise, a warning states that error and opaline
 uses it. Otherwise the error is that against the converged --method direct, and excludes the error of the radial
 profile; --time-budget and --verify replace auto by hierarchical. opaline estimates the error on a small image and adds samples until the estimate is low enough. --verify

@@ -124,23 +124,6 @@ void prepare(StageRunner& stages, const RenderArguments& arguments, Session& ses
   }
 }
 
-Shading shade(StageRunner& stages, const RenderArguments& arguments, Session& session) {
-  Shading shading;
-  const RayScene::Statistics before = session.rays().statistics();
-  shading.picture = stages.run("shading", [&] {
-    if (session.scene().settings.method == Method::direct) {
-      shading.direct = shade_direct(arguments, session, stages.monitor());
-      return std::move(shading.direct->picture);
-    }
-    return session.render(&stages.monitor());
-  });
-  const RayScene::Statistics after = session.rays().statistics();
-  shading.rays = after.rays - before.rays;
-  shading.embree_seconds = after.seconds - before.seconds;
-  shading.cpu_seconds = stages.costs().back().cpu_seconds;
-  return shading;
-}
-
 Summary summarize(const Session& session, const Shading& shading) {
   Summary summary;
   summary.peak_memory = peak_memory();
@@ -256,19 +239,8 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   return errors;
 }
 
-/// The image without its metadata, with its warnings.
-Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Session& session,
-                     const Shared& shared, bool is_frame) {
-  const std::size_t noted = session.costs().size();
-  prepare(stages, arguments, session);
-  for (std::size_t i = noted; i < session.costs().size(); ++i) stages.note(session.costs()[i]);
-  if (shared.cache != nullptr || is_frame)
-    print_decisions(arguments.log, session.decisions(),
-                    shared.cache != nullptr ? shared.cache->warning() : "");
-  for (const Body& body : session.bodies())
-    for (const std::string& text : method_of(body.plan.method).warnings(body, session.world().unit))
-      print_warning(arguments.log, text);
-  Shading shading = shade(stages, arguments, session);
+void print_picture_warnings(const RenderArguments& arguments, const Session& session,
+                            const Shading& shading) {
   if (shading.picture.non_finite > 0)
     print_warning(arguments.log,
                   std::to_string(shading.picture.non_finite) +
@@ -281,6 +253,32 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
   for (const std::string& text :
        warnings_of_shapes_inside(session.scene(), session.world(), session.rays(), session.plan()))
     print_warning(arguments.log, text);
+}
+
+/// The image without its metadata, with its warnings.
+Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Session& session,
+                     const Shared& shared, bool is_frame) {
+  const std::size_t noted = session.costs().size();
+  prepare(stages, arguments, session);
+  for (std::size_t i = noted; i < session.costs().size(); ++i) stages.note(session.costs()[i]);
+  if (shared.cache != nullptr || is_frame)
+    print_decisions(arguments.log, session.decisions(),
+                    shared.cache != nullptr ? shared.cache->warning() : "");
+  for (const Body& body : session.bodies())
+    for (const std::string& text : method_of(body.plan.method).warnings(body, session.world().unit))
+      print_warning(arguments.log, text);
+  Shading shading;
+  const RayScene::Statistics before = session.rays().statistics();
+  shading.picture = stages.run("shading", [&] {
+    if (session.scene().settings.method != Method::direct) return session.render(&stages.monitor());
+    shading.direct = shade_direct(arguments, session, stages.monitor());
+    return std::move(shading.direct->picture);
+  });
+  const RayScene::Statistics after = session.rays().statistics();
+  shading.rays = after.rays - before.rays;
+  shading.embree_seconds = after.seconds - before.seconds;
+  shading.cpu_seconds = stages.costs().back().cpu_seconds;
+  print_picture_warnings(arguments, session, shading);
   return shading;
 }
 

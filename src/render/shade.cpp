@@ -96,29 +96,12 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
     for (const Light& light : lights_) unit_lights_.push_back(with_emission(light, {1, 1, 1}));
 }
 
-std::size_t Shader::shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                          std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held) const {
-  std::size_t queries = 0;
-  const std::vector<SurfaceHits> all_hits =
-      shade_diffuse({.rays = rays, .keys = keys, .out = out, .spread = pixel_spread_, .is_of_camera = true},
-                    light_samples_, pass, held);
-  for (std::size_t f = 0; f < fields_.all.size(); ++f) {
-    if (all_hits[f].points.empty()) continue;
-    const float eta = fields_.all[f]->eta();
-    HeldView::Surface* const known = held != nullptr ? &held->surfaces[f] : nullptr;
-    if (eta > 0 && eta != 1) add_specular(all_hits[f], {rays, keys, out, pixel_spread_}, pass, known);
-    if (fields_.all[f]->asks_samples()) queries += all_hits[f].points.size();
-  }
-  return queries;
-}
-
-std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
-                                               HeldView::Batch* held) const {
+Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::Batch* held) const {
   if (held != nullptr) held->surfaces.resize(fields_.all.size());
   // Gathered rays are many, so only their lights are cached.
-  std::vector<SurfaceHits> all_hits = collect(batch, pass.is_seen ? held : nullptr);
+  Shaded result{collect(batch, pass.is_seen ? held : nullptr), 0};
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
-    const SurfaceHits& hits = all_hits[f];
+    const SurfaceHits& hits = result.hits[f];
     if (hits.points.empty()) continue;
     const Field& field = *fields_.all[f];
     HeldView::Surface* const known = held != nullptr ? &held->surfaces[f] : nullptr;
@@ -129,14 +112,18 @@ std::vector<SurfaceHits> Shader::shade_diffuse(const RayBatch& batch, int light_
                                         hits.keys,
                                         lights_,
                                         double(field.eta()),
-                                        light_samples,
+                                        batch.light_samples,
                                         point_irradiance_seed(input_.scene.settings),
                                         {},
                                         bounced,
                                         pass.is_seen && batch.mirrors == 0};
     write(hits, field.at(hits, lighting, pass, known), batch.rays, batch.out);
+    if (field.asks_samples()) result.queries += hits.points.size();
+    if (batch.specular == Specular::uniform) add_evenly_mirrored(hits, batch);
+    if (batch.specular == Specular::traced && field.eta() > 0 && field.eta() != 1)
+      add_specular(hits, batch, pass, known);
   }
-  return all_hits;
+  return result;
 }
 
 std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
@@ -151,9 +138,8 @@ std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const P
 std::vector<RgbF> Shader::radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                          HeldView::Batch* held) const {
   std::vector<PixelSample> seen(rays.size());
-  const RayBatch batch{rays, keys, seen, kGatheringSpread, {}};
-  for (const SurfaceHits& hits : shade_diffuse(batch, 1, {.entry_samples = 1, .is_seen = false}, held))
-    add_evenly_mirrored(hits, batch);
+  shade({.rays = rays, .keys = keys, .out = seen, .spread = kGatheringSpread, .specular = Specular::uniform},
+        {.entry_samples = 1, .is_seen = false}, held);
   std::vector<RgbF> radiance;
   radiance.reserve(seen.size());
   for (const PixelSample& sample : seen) radiance.push_back(sample.diffuse + sample.specular);

@@ -22,11 +22,38 @@ class Shader {
   /// sources: of meshes without a body. All arguments must outlive the object.
   explicit Shader(const RenderInput& input, std::span<const FieldSource> sources = {});
 
-  /// Shades a batch of traced camera rays, one PixelSample per ray; returns the number of exitance queries.
-  /// in    keys: random-number keys of the rays' light samples; held: cached light transport of the batch,
-  ///       extended; or null
-  std::size_t shade(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                    std::span<PixelSample> out, const Pass& pass, HeldView::Batch* held = nullptr) const;
+  /// Specular reflection at the hits: by rays, as of a uniform illumination, or none.
+  enum class Specular { traced, uniform, none };
+  /// Traced rays, shaded together.
+  struct RayBatch {
+    std::span<const TracedRay> rays;
+    std::span<const std::uint64_t> keys;  ///< choose the random numbers of the rays' light samples
+    std::span<PixelSample> out;           ///< one per ray
+    int light_samples = 1;                ///< per hit
+    /// Cone widths of the rays, for texture filtering: at the origins (empty: 0), and per length.
+    float spread = 0;
+    std::span<const float> widths = {};
+    int mirrors = 0;  ///< number of specular reflections before
+    Specular specular = Specular::traced;
+    bool is_of_camera = false;
+  };
+  RayBatch camera_batch(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
+                        std::span<PixelSample> out) const {
+    return {.rays = rays,
+            .keys = keys,
+            .out = out,
+            .light_samples = light_samples_,
+            .spread = pixel_spread_,
+            .is_of_camera = true};
+  }
+
+  struct Shaded {
+    std::vector<SurfaceHits> hits;  ///< of each field
+    std::size_t queries = 0;        ///< of exitance summed over samples
+  };
+  /// Adds the light of surfaces, and lights hit by rays.
+  /// in    held: cached light transport of the batch, extended; or null
+  Shaded shade(const RayBatch& batch, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
   /// Outgoing radiance along rays that hit surfaces, W/(mm^2 sr): diffuse, and specular under an
   /// approximately uniform illumination. Traces one ray per light.
@@ -61,16 +88,6 @@ class Shader {
     RgbF radiance(const Vec3f& direction) const;
   };
 
-  struct RayBatch {
-    std::span<const TracedRay> rays;
-    std::span<const std::uint64_t> keys;
-    std::span<PixelSample> out;
-    /// Cone widths of the rays, for texture filtering: at the origins (empty: 0), and per length.
-    float spread = 0;
-    std::span<const float> widths = {};
-    int mirrors = 0;  ///< number of specular reflections before
-    bool is_of_camera = false;
-  };
   /// Reflected rays and their cones.
   struct Cones {
     float spread = 0;
@@ -82,9 +99,6 @@ class Shader {
   void add_textures(const RayBatch& batch, std::size_t ray, bool from_behind, SurfacePoint& point,
                     SurfaceHits& hits) const;
   Appearance appearance_of(const SurfaceHits& hits, std::size_t i) const;
-  /// Adds diffuse light at hits, and visible lights. Returns the hits of each field.
-  std::vector<SurfaceHits> shade_diffuse(const RayBatch& batch, int light_samples, const Pass& pass,
-                                         HeldView::Batch* held) const;
   /// Light from other surfaces at hits; empty: none.
   std::vector<RgbF> bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
                                HeldView::Surface* held) const;

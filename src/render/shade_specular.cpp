@@ -105,10 +105,16 @@ std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
                                             std::span<const std::uint64_t> keys, const Cones& cones,
                                             const Pass& pass, int mirrors, HeldView::Batch* held) const {
   std::vector<PixelSample> seen(rays.size());
-  const RayBatch batch{rays, keys, seen, cones.spread, cones.widths, mirrors};
+  const RayBatch batch{.rays = rays,
+                       .keys = keys,
+                       .out = seen,
+                       .light_samples = std::max(1, light_samples_ / kFewerInMirrors),
+                       .spread = cones.spread,
+                       .widths = cones.widths,
+                       .mirrors = mirrors,
+                       .specular = Specular::none};
   const Pass& mirrored = pass.in_mirrors != nullptr ? *pass.in_mirrors : pass;
-  const std::vector<SurfaceHits> all_hits =
-      shade_diffuse(batch, std::max(1, light_samples_ / kFewerInMirrors), mirrored, held);
+  const std::vector<SurfaceHits> all_hits = shade(batch, mirrored, held).hits;
   for (std::size_t f = 0; f < all_hits.size(); ++f) {
     const SurfaceHits& hits = all_hits[f];
     SurfaceHits followed, last;

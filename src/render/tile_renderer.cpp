@@ -124,11 +124,11 @@ TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass,
     if (!shader_.has_visible_lights() && std::ranges::none_of(rays, is_hit)) continue;
     result.sums.resize(pixels);
     if (samples == 1) {
-      result.queries += shader_.shade(rays, keys, result.sums, pass, kept);
+      result.queries += shader_.shade(shader_.camera_batch(rays, keys, result.sums), pass, kept).queries;
       continue;
     }
     seen.assign(rays.size(), PixelSample{});
-    result.queries += shader_.shade(rays, keys, seen, pass, kept);
+    result.queries += shader_.shade(shader_.camera_batch(rays, keys, seen), pass, kept).queries;
     for (std::size_t i = 0; i < rays.size(); ++i) add_sample(result.sums[pixel_of_ray[i]], seen[i]);
   }
   return result;

@@ -41,9 +41,6 @@ Image Session::first_light(Monitor* monitor) {
 void Session::prepare(Monitor* monitor) {
   state_->prepare(monitor);
 }
-RenderResult Session::render(Monitor* monitor) {
-  return state_->render(monitor);
-}
 
 std::vector<RgbF> Session::radiant_exitance(std::size_t body, std::span<const Vec3d> points,
                                             std::span<const Vec3f> normals) {

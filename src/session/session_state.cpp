@@ -231,18 +231,21 @@ void Session::State::prepare(Monitor* monitor) {
   prepared_ = true;
 }
 
-RenderResult Session::State::render(Monitor* monitor) {
+RenderResult Session::render(Monitor* monitor) {
+  State& state = *state_;
   const CancelScope scope(monitor);
-  prepare(monitor);
-  if (auto image = method_of(scene_.settings.method).render_image({scene_, *world_, *rays_, plan_, monitor}))
+  state.prepare(monitor);
+  const Scene& scene = state.scene_;
+  if (auto image = method_of(scene.settings.method)
+                       .render_image({scene, *state.world_, *state.rays_, state.plan_, monitor}))
     return *std::move(image);
-  HeldView* const view = held_view();
+  HeldView* const view = state.held_view();
   if (view != nullptr) view->next_picture();
-  RenderInput input{scene_, *world_, *rays_, bodies(), monitor, view};
-  if (bounces_of(scene_) > 0) update_bounced_places(input);
-  input.bounced = bounced_;
+  RenderInput input{scene, *state.world_, *state.rays_, state.bodies(), monitor, view};
+  if (bounces_of(scene) > 0) state.update_bounced_places(input);
+  input.bounced = state.bounced_;
   RenderResult result = opaline::render(input);
-  work_.queries += result.queries;
+  state.work_.queries += result.queries;
   return result;
 }
 

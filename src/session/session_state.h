@@ -25,7 +25,6 @@ struct Session::State {
   void prepare_rays();
   Image first_light(Monitor* monitor);
   void prepare(Monitor* monitor);
-  RenderResult render(Monitor* monitor);
 
   bool is_needed() const {
     return method_of(scene_.settings.method).needs_samples() && !plan_.groups.empty();
