@@ -48,8 +48,8 @@ class Shader {
   }
 
   struct Shaded {
-    std::vector<SurfaceHits> hits;  ///< of each field
-    std::size_t queries = 0;        ///< of exitance summed over samples
+    std::vector<SurfaceHits> hits;  ///< one entry per field
+    std::size_t queries = 0;        ///< number of points with exitance summed over samples
   };
   /// Adds the light of surfaces, and lights hit by rays.
   /// in    held: cached light transport of the batch, extended; or null

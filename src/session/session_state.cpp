@@ -58,6 +58,7 @@ void Session::State::edit(Scene scene) {
   decisions_.clear();
   costs_.clear();
   prepared_ = false;
+  keep_cells();
   keep_spacing();
 }
 
@@ -131,6 +132,30 @@ void Session::State::anchor(Scene scene, Monitor* monitor) {
     if (has_placed(bodies_[g].plan))
       update_samples(bodies_[g], keys_[g], {scene_, *world_, *rays_, plan_, monitor}, g);
   anchored_ = true;
+}
+
+// Keeps the size of cells while it is suitable: those of the reference frame, or of the last scene. An edit of a
+// medium then leaves the cut surface and its shadow rays.
+void Session::State::keep_cells() {
+  constexpr double kSmallest = 1.3, kLargest = 1.1;  // requested size over the current one, and the inverse
+  const double setting = std::exchange(cell_size_, scene_.settings.cell_size);
+  if (matches_new_ || setting != cell_size_) return;
+  for (BodyPlan& group : plan_.groups) {
+    if (!(group.cell > 0)) continue;
+    const BodyPlan* kept = nullptr;
+    for (const BodyPlan& other : reference_)
+      if (other.name == group.name) kept = &other;
+    for (const Body& body : bodies_)
+      if (reference_.empty() && body.plan.name == group.name) kept = &body.plan;
+    if (kept == nullptr || kept->cell == group.cell || kept->cell_parts != group.cell_parts ||
+        group.cell > kSmallest * kept->cell || kept->cell > kLargest * group.cell)
+      continue;
+    const double finer = group.cell / kept->cell;
+    group.cell = kept->cell;
+    group.samples = std::size_t(std::ceil(double(group.samples) * finer * finer));
+    group.spacing = std::sqrt(group.area / double(group.samples));
+    group.reason = "unchanged, close enough to " + group.reason;
+  }
 }
 
 // Keeps samples without a set number while their spacing is suitable.

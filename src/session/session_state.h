@@ -34,6 +34,7 @@ struct Session::State {
   void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);
   World loaded_world(const Scene& scene, const std::vector<StageKey>& sources,
                      const std::vector<StageKey>& shapes, SessionWork& work);
+  void keep_cells();
   void keep_spacing();
   void update_rays();
   void arrange_bodies();
@@ -77,6 +78,7 @@ struct Session::State {
   StageKey view_key_, view_surfaces_key_, view_coats_key_, view_near_key_, view_samples_key_;
   std::vector<StageKey> view_light_keys_;
   std::vector<BodyPlan> reference_;  ///< plans of the anchor; empty: none
+  double cell_size_ = 0;             ///< settings.cell_size of the last scene
   bool edits_ = true, prepared_ = false, anchored_ = false, matches_new_ = false;
   SourceKeys source_keys_;
   WalkStore walk_store_;

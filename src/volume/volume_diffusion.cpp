@@ -80,7 +80,7 @@ double length_to_resolve(double mean_free_path, double absorbed) {
 // Cells per face of the surface's cells, as cells grow inwards; src/volume/README.md. Thin bodies contain
 // cells of the smallest size only, filling them or cut by their surface.
 double expected_cells(double area, double thickness, double cell) {
-  constexpr double kOfThick = 4.5, kCut = .75;
+  constexpr double kOfThick = 4.5, kCut = .5;
   const double for_face = thickness > 0 ? std::min(kOfThick, thickness / (2 * cell) + kCut) : kOfThick;
   return for_face * area / (cell * cell);
 }

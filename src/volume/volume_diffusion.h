@@ -42,7 +42,7 @@ inline constexpr double kWidestCell = 3;
 ///       of length
 double expected_cells(double area, double thickness, double cell);
 /// Bytes per cell, both grids and the solver's vectors included; bench_plan.
-inline constexpr double kBytesOfCell = 275;
+inline constexpr double kBytesOfCell = 320;
 
 /// Diffusion from the first collisions along the refracted rays, on cells growing inwards. Linear in the
 /// lights; the cells do not depend on them. Theory and measurements: src/volume/README.md.

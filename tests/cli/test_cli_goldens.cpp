@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shipped scenes' small pictures, as they were when somebody last looked at them. Where a picture is to change, look at
 // the new one at full size, and keep it:
-//   OPTIONS="--resolution 64x48 --spp 4 --set settings.samples=2000 --layers none" G=tests/cli/goldens
+//   OPTIONS="--resolution 64x48 --spp 4 --method hierarchical --set settings.samples=2000 --layers none" G=tests/cli/goldens
 //   for s in sphere texture-mix backlit-slab fork bunny-marble bunny-skin1
 //   do build/src/opaline render scenes/$s.json $OPTIONS -o $G/$s.exr; done
 //   build/src/opaline render scenes/apples.glb $OPTIONS -o $G/apples.exr --environment $G/room.exr

@@ -82,7 +82,7 @@ TEST(AcrossAir, DiffusionKeepsLightInside) {
         R"({"media": {"m": {"preset": "marble"}}, "shapes": [{"file": "fork.obj", "medium": "m", "normals": "faceted"}],
       "lights": [{"name": "sun", "type": "directional", "direction": [1, 0, 0], "irradiance": 3}],
       "camera": {"position": [60, 8, 0], "look_at": [0, 8, 0], "field_of_view": 6},
-      "film": {"resolution": [16, 16], "pixel_type": "float"}, "settings": {"method": ")" +
+      "film": {"resolution": [16, 16], "pixel_type": "float"}, "settings": {"reenter": false, "method": ")" +
             method + "\"}}",
         folder.file("scene.json"), {}));
     const Image image = session.render().image;
