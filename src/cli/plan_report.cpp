@@ -66,7 +66,7 @@ std::string lights_text(const std::vector<Light>& lights) {
 /// Adds profile and error, for methods using a radial profile.
 void add_model(Paragraphs& plan, const Scene& scene, const BodyPlan& group, double across_air) {
   if (method_of(group.method).uses_radial_profile()) add_row(plan, "", "profile " + model_text(group.model));
-  const std::string error = model_error_text(group.model, group.method, gathers_light(scene, group));
+  const std::string error = model_error_text(group.model, group.method, !leaves_out_reentry(scene, group));
   if (!error.empty()) add_row(plan, "", error);
   constexpr double kWorthSaying = .02;
   if (across_air > kWorthSaying)

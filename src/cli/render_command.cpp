@@ -129,7 +129,7 @@ Summary summarize(const Session& session, const Shading& shading) {
   summary.peak_memory = peak_memory();
   summary.model_error = expected_model_error(session.plan());
   summary.leaves_out_reentry = std::ranges::any_of(
-      session.plan().groups, [&](const BodyPlan& body) { return !gathers_light(session.scene(), body); });
+      session.plan().groups, [&](const BodyPlan& body) { return leaves_out_reentry(session.scene(), body); });
   summary.unknown_models = bodies_of_unknown_error(session.plan());
   summary.queries = shading.picture.queries;
   summary.estimated_error = estimated_relative_error(shading.picture.image, shading.picture.translucent);

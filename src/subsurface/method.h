@@ -117,6 +117,8 @@ const SubsurfaceMethod& method_of(Method method);
 
 /// True if light from other surfaces or from the same body is gathered at the samples of a body.
 bool gathers_light(const Scene& scene, const BodyPlan& body);
+/// True if light could enter a body again, but is not gathered.
+bool leaves_out_reentry(const Scene& scene, const BodyPlan& body);
 
 /// Radiant exitance at arbitrary points of a body's surface. For mean free paths below the sample spacing,
 /// `render` traces shadow rays for the irradiance at its points; this function interpolates it.

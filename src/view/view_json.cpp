@@ -60,7 +60,7 @@ Json group_json(const Scene& scene, const BodyPlan& group) {
                                  group.area, mean_free_path_text(group));
   if (method_of(scene.settings.method).needs_samples()) text += "; " + samples_text(group);
   text += "; profile " + model_text(group.model);
-  const std::string error = model_error_text(group.model, group.method, gathers_light(scene, group));
+  const std::string error = model_error_text(group.model, group.method, !leaves_out_reentry(scene, group));
   if (!error.empty()) text += "; " + error;
   return {{"name", group.name},
           {"medium", scene.media[group.medium].name},
