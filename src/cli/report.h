@@ -80,7 +80,7 @@ struct Summary {
   std::vector<LightNoise> noise;
   double estimated_error = 0;               ///< estimated_relative_error of `hierarchical`; 0: none
   std::optional<double> model_error;        ///< expected_model_error
-  bool leaves_out_reentry = false;          ///< true if a body gathers no light that enters it again
+  bool leaves_out_reentry = false;          ///< true if re-entry is missing for a body
   std::vector<std::string> unknown_models;  ///< bodies_of_unknown_error
   KnownErrors errors;
   std::optional<SpentBudget> budget;

@@ -238,12 +238,13 @@ std::span<const Member<Settings>> settings_members() {
           "reenter", flag, "", kFiniteNumber, "", {walks},
           "`volume` and `volume_diffusion`: re-entry of outgoing light into the same body, as in "
           "concavities, "
-          "for `volume` of reflected light too; `false`: such light is lost. Other methods: `bounces`"),
+          "for `volume` of reflected light too; `false`: such light is lost, unless `bounces` is 1. Other "
+          "methods: `bounces`"),
       member<&Settings::bounces>(
           "bounces", whole_number, "", {0, 1}, "1 if one surface can light another", {},
           "all methods but `volume`: 1: one bounce of light between surfaces, such as from a floor to the "
           "object on it, or within one body, and all bounces between bodies of `volume_diffusion`; 0: direct "
-          "light only"),
+          "light only, without re-entry"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
                               {samples, transfers, exitance, walks, surfaces, gathered, view_surfaces},
                               "random seed; the same seed gives the same image"),

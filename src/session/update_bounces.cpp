@@ -34,7 +34,7 @@ class BounceSeries {
   }
   /// Ratio of two bounces.
   double ratio() const {
-    constexpr double kLargest = .9;  // noise; not reached by media that absorb
+    constexpr double kLargest = .9;  // bound against noise
     return previous_ > 0 ? std::clamp(last_ / previous_, 0., kLargest) : 0;
   }
   /// Sum of all further bounces over the last one, as a geometric series.
@@ -77,7 +77,7 @@ class DirectlyLitBodies {
 // Bounced light depends on all bodies.
 void Session::State::update_bounces(std::span<BodyStages> bodies) {
   const PrecomputeInput& input = bodies.front().input;
-  KeyBuilder all("bounces", 3);
+  KeyBuilder all("bounces", 4);
   all.add(surfaces_key(input, mesh_keys_, bodies.front().lights));
   for (const Body& body : bodies_) all.add(method_of(body.plan.method).direct_key(body));
   std::vector<StageKey> wanted;

@@ -27,7 +27,7 @@ double golden_point(std::size_t i) {
 }
 
 constexpr std::size_t kDirections = 8;  // per light that is not a point
-constexpr std::size_t kAllAround = 3;   // directions of uniform light, different at neighbouring elements
+constexpr std::size_t kAllAround = 5;   // directions of uniform light, different at neighbouring elements
 
 /// Incident directions with their fractions of the transmitted flux.
 struct Directions {

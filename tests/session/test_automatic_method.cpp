@@ -90,5 +90,29 @@ TEST(AutomaticMethod, OpenMeshesKeepTheirTextures) {
       same_pixels(picture_of(folder, text), picture_of(folder, text, {"settings.method=hierarchical"})));
 }
 
+// Claim: a session keeps cells that suit an edited medium, and its samples and shadow rays with them; it cuts the surface anew
+// for cells too wide or too narrow, for another cell_size, and to match a new session. Source: keep_cells. Fails if: each
+// edit of a medium cuts the surface (medium x 1.05), or wide cells stay in a dense medium (x 2).
+TEST(AutomaticMethod, SuitableCellsAreKept) {
+  const auto placed = [](double denser, double cell_size, bool matches_new) {
+    Session session;
+    session.match_new_session(matches_new);
+    Scene scene = with_method(open_choice(), Method::automatic);
+    session.edit(scene);
+    session.prepare();
+    std::get<PhysicalMedium>(scene.media[0].coefficients).sigma_s_prime *= denser;
+    scene.settings.cell_size = cell_size;
+    session.edit(scene);
+    session.prepare();
+    return session.work().samples_placed;
+  };
+  const double usual = Settings().cell_size;
+  EXPECT_EQ(placed(1.05, usual, false), 0u);
+  EXPECT_GT(placed(2, usual, false), 0u);
+  EXPECT_GT(placed(.5, usual, false), 0u);
+  EXPECT_GT(placed(1, .95 * usual, false), 0u);
+  EXPECT_GT(placed(1.05, usual, true), 0u);
+}
+
 }  // namespace
 }  // namespace opaline::test

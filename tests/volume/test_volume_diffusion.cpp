@@ -61,12 +61,12 @@ TEST(VolumeDiffusion, FlatFaceIsAHalfSpace) {
 
 // Claim: light of equal radiance from all sides sends out what surroundings do, wherever it enters. Source: the same light by
 // other directions. Tolerance: .3 % in the mean, which is .07 % with eta 1 (1.8 % were the directions spread evenly over the
-// hemisphere), and rms over a box 7 and 3 %, few directions each,
-// on cells of twice the size. Fails if: they are not spread by the cosine and the boundary.
+// hemisphere), and rms over a box 6 and 2 %, few directions each (measured 5.7 and 1.2 %). Even light is solved on cells of
+// twice the size, here .5. Fails if: they are not spread by the cosine and the boundary.
 TEST(VolumeDiffusion, EvenLightIsThatOfSurroundings) {
   LitBody body(BoxShape{{-4, -3, -2}, {4, 3, 2}}, 2000, NormalMode::faceted);
   const Surroundings light{Rgb(1)};
-  const double unit = body.world.unit, cell = .5 / unit;
+  const double unit = body.world.unit, cell = .25 / unit;
   CutSurface cut = cut_surface(body.world, body.meshes, cell, 1);
   body.surface = std::move(cut.surface);
   for (const double eta : {1., 1.5}) {
@@ -85,7 +85,7 @@ TEST(VolumeDiffusion, EvenLightIsThatOfSurroundings) {
       square += area * change * change;
     }
     EXPECT_NEAR(sum, 0, .003) << eta;
-    EXPECT_LT(std::sqrt(square), eta > 1 ? .03 : .07) << eta;
+    EXPECT_LT(std::sqrt(square), eta > 1 ? .02 : .06) << eta;
   }
 }
 
@@ -121,10 +121,10 @@ TEST(VolumeDiffusion, DarkBallAsWalked) {
   EXPECT_NEAR(mean_left(scene) / walked, 1, .03);
 }
 
-// Claim: light that leaves one plate of a body and enters another, and comes back, is that of random walks. Source: the
-// walks. Tolerance: 9 % of the plate in shadow, lit by such light alone (measured 5.5; the walks' noise is 2), 2 % of the
-// lit one. Fails if: re-entry is off by default (-100 %), light bounces once (-12 %), or reflected light is taken as diffuse
-// (15 %).
+// Claim: light going to and fro between two plates of a body equals that of random walks. Source: the walks. Tolerance: 5 %
+// for the plate in shadow, which has no other light (measured 1.4), and 2 % for the lit one (.8). Fails if: re-entry is off by
+// default (no light), light bounces once (-23 and -7 %), or a specular reflection is inferred from the exitance of faces in
+// shadow (9.5 %).
 TEST(VolumeDiffusion, LightEntersAgainAsWalked) {
   Scene scene = parse_scene(R"({
     "media": {"milky": {"sigma_a": [0.005, 0.005, 0.005], "sigma_s": [3, 3, 3], "eta": 1.4}},
@@ -137,7 +137,7 @@ TEST(VolumeDiffusion, LightEntersAgainAsWalked) {
   const double lit = mean_left(scene, 0), shadowed = mean_left(scene, 1);
   scene.settings.method = Method::automatic;
   EXPECT_NEAR(mean_left(scene, 0) / lit, 1, .02);
-  EXPECT_NEAR(mean_left(scene, 1) / shadowed, 1, .09);
+  EXPECT_NEAR(mean_left(scene, 1) / shadowed, 1, .05);
 }
 
 // Claim: a plate of three mean free paths sends back and lets through what a slab does. Source: random walks in a slab.
