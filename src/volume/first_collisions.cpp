@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/random.h"
 #include "lights/light.h"
@@ -27,7 +28,10 @@ double golden_point(std::size_t i) {
 }
 
 constexpr std::size_t kDirections = 8;  // per light that is not a point
-constexpr std::size_t kAllAround = 5;   // directions of uniform light, different at neighbouring elements
+// Directions of uniform light, different at neighbouring elements: on average, of all elements, and at most for one
+// that receives more than others.
+constexpr double kAllAround = 5;
+constexpr std::size_t kMostAround = 64;
 
 /// Incident directions with their fractions of the transmitted flux.
 struct Directions {
@@ -35,7 +39,7 @@ struct Directions {
     Vec3f outward;
     double share;
   };
-  std::array<One, kDirections> some;
+  std::array<One, kMostAround> some;
   std::size_t count = 0;
 };
 
@@ -60,13 +64,14 @@ Directions towards_light(const Light& light, const BoundaryElement& element, dou
   return found;
 }
 
-Directions all_around(const BoundaryElement& element, double eta, std::size_t i) {
+// first: the first of `count` points of a low-discrepancy sequence
+Directions all_around(const BoundaryElement& element, double eta, std::size_t first, std::size_t count) {
   Vec3f x, y;
   tangent_frame(element.normal, x, y);
   Directions found;
   double sum = 0;
-  for (; found.count < kAllAround; ++found.count) {
-    const auto [u, v] = r2_point(i * kAllAround + found.count, {.5, .5});
+  for (; found.count < count; ++found.count) {
+    const auto [u, v] = r2_point(first + found.count, {.5, .5});
     const double sine = std::sqrt(u), cosine = std::sqrt(1 - u), angle = 2 * std::numbers::pi * v;
     const double share = fresnel_transmittance(cosine, eta);
     found.some[found.count] = {x * float(sine * std::cos(angle)) + y * float(sine * std::sin(angle)) +
@@ -364,6 +369,23 @@ std::vector<Rgb> entering_flux(const DiffusionSpace& space, const OfSample& ente
   return flux;
 }
 
+/// Numbers of directions of uniform light: each has about the same share of the light, in the channel where that is most.
+class DirectionCounts {
+ public:
+  explicit DirectionCounts(std::span<const Rgb> flux) {
+    Rgb sum{};
+    for (const Rgb& each : flux) sum += each;
+    for (std::size_t c = 0; c < 3; ++c)
+      if (sum[c] > 0) per_flux_[c] = kAllAround * double(flux.size()) / sum[c];
+  }
+  std::size_t of(const Rgb& flux) const {
+    return std::size_t(std::clamp(std::ceil(max_component(flux * per_flux_)), 1., double(kMostAround)));
+  }
+
+ private:
+  Rgb per_flux_{};
+};
+
 // directions: of an element, by its index
 template <class DirectionsOf>
 void enter_everywhere(const DiffusionSpace& space, std::span<const Rgb> flux, const DirectionsOf& directions,
@@ -396,9 +418,15 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
   if (light.even.empty()) return depositor.take();
   const std::vector<Rgb> flux =
       entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
+  const DirectionCounts counts(flux);
+  std::size_t next = 0;
   enter_everywhere(
-      space, flux, [&](std::size_t i) { return all_around(elements[i], space.eta(), i); }, depositor,
-      monitor);
+      space, flux,
+      [&](std::size_t i) {
+        const std::size_t count = counts.of(flux[i]);
+        return all_around(elements[i], space.eta(), std::exchange(next, next + count), count);
+      },
+      depositor, monitor);
   return depositor.take();
 }
 
