@@ -28,9 +28,9 @@ double golden_point(std::size_t i) {
 }
 
 constexpr std::size_t kDirections = 8;  // per light that is not a point
-// Directions of uniform light, different at neighbouring elements: on average, of all elements, and at most for one
-// that receives more than others.
-constexpr double kAllAround = 5;
+// Directions of uniform light, different at neighbouring elements: of an average element, if there is no other light;
+// at least, as an element may be in the shadow of all other light; and at most.
+constexpr double kAllAround = 5, kFewestAround = 4;
 constexpr std::size_t kMostAround = 64;
 
 /// Incident directions with their fractions of the transmitted flux.
@@ -369,17 +369,20 @@ std::vector<Rgb> entering_flux(const DiffusionSpace& space, const OfSample& ente
   return flux;
 }
 
-/// Numbers of directions of uniform light: each has about the same share of the light, in the channel where that is most.
+/// Numbers of directions of uniform light: each carries about the same flux, in the channel with most relative to all
+/// light of the body.
 class DirectionCounts {
  public:
-  explicit DirectionCounts(std::span<const Rgb> flux) {
-    Rgb sum{};
+  DirectionCounts(const DiffusionSpace& space, std::span<const Rgb> flux, std::span<const RgbF> beside) {
+    Rgb sum{}, other{};
     for (const Rgb& each : flux) sum += each;
+    for (std::size_t s = 0; s < beside.size(); ++s) other += Rgb(beside[s]) * double(space.samples[s].area);
     for (std::size_t c = 0; c < 3; ++c)
-      if (sum[c] > 0) per_flux_[c] = kAllAround * double(flux.size()) / sum[c];
+      if (sum[c] > 0) per_flux_[c] = kAllAround * double(flux.size()) / std::max(sum[c], other[c]);
   }
   std::size_t of(const Rgb& flux) const {
-    return std::size_t(std::clamp(std::ceil(max_component(flux * per_flux_)), 1., double(kMostAround)));
+    return std::size_t(
+        std::clamp(std::ceil(max_component(flux * per_flux_)), kFewestAround, double(kMostAround)));
   }
 
  private:
@@ -418,7 +421,7 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
   if (light.even.empty()) return depositor.take();
   const std::vector<Rgb> flux =
       entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
-  const DirectionCounts counts(flux);
+  const DirectionCounts counts(space, flux, light.beside);
   std::size_t next = 0;
   enter_everywhere(
       space, flux,

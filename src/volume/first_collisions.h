@@ -22,6 +22,7 @@ struct EnteringLight {
   std::span<const LightTransfer> transfers;  ///< one per light
   std::span<const RgbF> tints;               ///< factors, one per sample; empty: none
   std::span<const RgbF> even = {};           ///< uniform, W per area, one per sample; empty: none
+  std::span<const RgbF> beside = {};  ///< exitance by other light, which hides noise of `even`; may be empty
 };
 
 /// A boundary element's cell.

@@ -100,10 +100,11 @@ VolumeExitance VolumeDiffusion::exitance(std::span<const Light> lights,
   return state_->exitance({lights, transfers, tints}, monitor);
 }
 
-VolumeExitance VolumeDiffusion::exitance_of_even(std::span<const RgbF> entering, Monitor* monitor) const {
+VolumeExitance VolumeDiffusion::exitance_of_even(std::span<const RgbF> entering, std::span<const RgbF> beside,
+                                                 Monitor* monitor) const {
   if (monitor != nullptr) monitor->begin("diffusion", 2 * state_->coarse.elements());
   VolumeExitance result;
-  result.exitance = state_->coarse.solve({{}, {}, {}, entering}, {}, monitor).exitance;
+  result.exitance = state_->coarse.solve({{}, {}, {}, entering, beside}, {}, monitor).exitance;
   advance(monitor, state_->coarse.elements());
   result.error.resize(result.exitance.size());
   return result;

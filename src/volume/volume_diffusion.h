@@ -63,9 +63,11 @@ class VolumeDiffusion {
 
   /// Exitance for uniform incident light at each sample, the approximation for light from other surfaces.
   /// Uses cells of twice the size, as this light is smooth and a small part of all.
-  /// in    entering: transmitted irradiance, W per area, one per sample
+  /// in    entering: transmitted irradiance, W per area, one per sample; beside: exitance by other light, one per
+  ///       sample, or empty; the more there is, the noisier is the result
   /// out   error: 0, as that of cells for other light does not apply
-  VolumeExitance exitance_of_even(std::span<const RgbF> entering, Monitor* monitor = nullptr) const;
+  VolumeExitance exitance_of_even(std::span<const RgbF> entering, std::span<const RgbF> beside = {},
+                                  Monitor* monitor = nullptr) const;
 
   /// Cells of the finer grid.
   std::size_t cells() const;

@@ -152,15 +152,18 @@ void VolumeDiffusionMethod::add_bounced(BodyStages& stages, std::span<const RgbF
     return;
   }
   StageResult<VolumeExitance> added;
-  stages.store.get(added, key, VolumeCodec{stages.body.surface.samples.size()},
-                   [&] { return update_cells(stages).exitance_of_even(bounced, stages.input.monitor); });
+  stages.store.get(added, key, VolumeCodec{stages.body.surface.samples.size()}, [&] {
+    return update_cells(stages).exitance_of_even(bounced, state.direct.value.exitance, stages.input.monitor);
+  });
   state.fit = fit_with(stages, added.value.exitance);
   state.bounced = std::move(added);
 }
 
 void VolumeDiffusionMethod::add_for_gathering(BodyStages& stages, std::span<const RgbF> bounced) const {
-  const VolumeExitance added = update_cells(stages).exitance_of_even(bounced, stages.input.monitor);
-  state_of<VolumeDiffusionState>(stages.body).fit = fit_with(stages, added.exitance);
+  auto& state = state_of<VolumeDiffusionState>(stages.body);
+  const VolumeExitance added =
+      update_cells(stages).exitance_of_even(bounced, state.direct.value.exitance, stages.input.monitor);
+  state.fit = fit_with(stages, added.exitance);
 }
 
 std::unique_ptr<MethodState> VolumeDiffusionMethod::direct_state(const BodyStages& stages) const {
