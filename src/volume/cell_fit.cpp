@@ -194,7 +194,7 @@ CellFit::CellFit(const CellWeights& weights, std::span<const RgbF> means, std::s
   parallel_chunks(means.size(), kChunk, [&](std::size_t begin, std::size_t, std::size_t c) {
     fit(weights.chunks_[c], begin, means, errors, surprises);
   });
-  smooth(weights.chunks_, std::move(surprises));
+  if (!errors.empty()) smooth(weights.chunks_, std::move(surprises));
 }
 
 // Fits the quadratics. A cell's surprise is its squared residual, minus the expectation from the means'
@@ -215,8 +215,10 @@ void CellFit::fit(const CellWeights::Chunk& chunk, std::size_t begin, std::span<
     for (; next < chunk.ends[i]; ++next) {
       const std::uint32_t sample = chunk.neighbours[next].sample;
       const std::array<float, kTerms>& terms = chunk.terms[next];
-      const Channels mean = channels_of(means[sample]), error = channels_of(errors[sample]);
+      const Channels mean = channels_of(means[sample]);
       for (std::size_t t = 0; t < kTerms; ++t) fit.terms[t] += mean * terms[t];
+      if (errors.empty()) continue;
+      const Channels error = channels_of(errors[sample]);
       add_square(noise2, error * terms[0]);
       const float over_cell = terms[0] + frame.moment * (terms[3] + terms[5]),
                   miss = (sample == own ? 1 : 0) - over_cell;

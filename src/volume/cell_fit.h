@@ -56,7 +56,7 @@ class CellFit {
  public:
   /// in    means, errors: one per sample's cell; errors: standard, mutually independent
   CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> means, std::span<const RgbF> errors);
-  /// The same bits, from weights of the same samples.
+  /// The same bits, from weights of the same samples. No errors: noise and shape are 0.
   CellFit(const CellWeights& weights, std::span<const RgbF> means, std::span<const RgbF> errors);
 
   struct Value {

@@ -18,7 +18,7 @@ namespace {
 constexpr double kLeastCosine = 1e-3;   // least cosine of light inside, avoiding division by 0 for eta < 1
 constexpr double kSpread = 1.2;         // cells around an exit
 constexpr double kLeastAgreement = .5;  // least agreement of normals of one sheet
-constexpr double kFarthest = 5;         // free paths; longer flights end there
+constexpr double kFarthest = 4;         // free paths; longer flights end there
 constexpr double kStep = .4;            // cells
 
 // Additive recurrence with the golden ratio in [0, 1).

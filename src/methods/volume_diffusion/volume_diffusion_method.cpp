@@ -57,7 +57,7 @@ VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::
 }
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kCellsVersion = 5, kDiffusionVersion = 5;
+constexpr std::uint64_t kCellsVersion = 5, kDiffusionVersion = 6;
 
 StageKey cells_key(const BodyStages& stages) {
   const Body& body = stages.body;
@@ -91,11 +91,12 @@ RgbF local_reflectance(const Scene& scene, const Body& body) {
 }
 
 /// Fit of the direct light and another exitance.
-std::shared_ptr<const CellFit> fit_with(BodyStages& stages, std::span<const RgbF> added) {
+std::shared_ptr<const CellFit> fit_with(BodyStages& stages, std::span<const RgbF> added,
+                                        std::span<const RgbF> errors) {
   auto& state = state_of<VolumeDiffusionState>(stages.body);
   std::vector<RgbF> all = state.direct.value.exitance;
   for (std::size_t i = 0; i < all.size(); ++i) all[i] += added[i];
-  return fit_cells(stages, state.weights, all, state.direct.value.error);
+  return fit_cells(stages, state.weights, all, errors);
 }
 
 }  // namespace
@@ -155,7 +156,7 @@ void VolumeDiffusionMethod::add_bounced(BodyStages& stages, std::span<const RgbF
   stages.store.get(added, key, VolumeCodec{stages.body.surface.samples.size()}, [&] {
     return update_cells(stages).exitance_of_even(bounced, state.direct.value.exitance, stages.input.monitor);
   });
-  state.fit = fit_with(stages, added.value.exitance);
+  state.fit = fit_with(stages, added.value.exitance, state.direct.value.error);
   state.bounced = std::move(added);
 }
 
@@ -163,7 +164,7 @@ void VolumeDiffusionMethod::add_for_gathering(BodyStages& stages, std::span<cons
   auto& state = state_of<VolumeDiffusionState>(stages.body);
   const VolumeExitance added =
       update_cells(stages).exitance_of_even(bounced, state.direct.value.exitance, stages.input.monitor);
-  state.fit = fit_with(stages, added.exitance);
+  state.fit = fit_with(stages, added.exitance, {});
 }
 
 std::unique_ptr<MethodState> VolumeDiffusionMethod::direct_state(const BodyStages& stages) const {
