@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <utility>
 
+#include "core/parallel.h"
 #include "core/random.h"
 #include "lights/light.h"
 #include "transport/fresnel.h"
@@ -105,8 +105,8 @@ class ElementsOfCells {
 
 class Depositor {
  public:
-  explicit Depositor(const DiffusionSpace& space)
-      : space_(space), elements_of_(space.attached, space.grid.cells().size()) {
+  Depositor(const DiffusionSpace& space, const ElementsOfCells& elements_of)
+      : space_(space), elements_of_(elements_of) {
     result_.source.resize(space.grid.cells().size());
     result_.leaving.resize(space.boundary.elements.size());
     for (const std::array<CalibratedMedium, 3>& media : space.media)
@@ -157,7 +157,7 @@ class Depositor {
   void leave(const Way& way, const Exit& exit, std::size_t i, const Rgb& flux);
 
   const DiffusionSpace& space_;
-  ElementsOfCells elements_of_;
+  const ElementsOfCells& elements_of_;
   struct Share {
     std::uint32_t element;
     double per_area;
@@ -381,31 +381,62 @@ class DirectionCounts {
       if (sum[c] > 0) per_flux_[c] = kAllAround * double(flux.size()) / std::max(sum[c], other[c]);
   }
   std::size_t of(const Rgb& flux) const {
-    return std::size_t(
-        std::clamp(std::ceil(max_component(flux * per_flux_)), kFewestAround, double(kMostAround)));
+    const double directions = std::ceil(max_component(flux * per_flux_));
+    return directions > 0 ? std::size_t(std::clamp(directions, kFewestAround, double(kMostAround))) : 0;
   }
 
  private:
   Rgb per_flux_{};
 };
 
-// directions: of an element, by its index
-template <class DirectionsOf>
-void enter_everywhere(const DiffusionSpace& space, std::span<const Rgb> flux, const DirectionsOf& directions,
-                      Depositor& depositor, Monitor* monitor) {
-  for (std::size_t i = 0; i < flux.size(); ++i) {
-    advance(monitor, 1);
-    if (!(max_component(flux[i]) > 0) || space.attached[i].cell == DiffusionGrid::kNone) continue;
-    const Directions from = directions(i);
-    for (std::size_t n = 0; n < from.count; ++n)
-      depositor.enter(Vec3d(from.some[n].outward), flux[i] * from.some[n].share, i);
+/// Light entering at all elements. Each of a fixed number of parts of the elements has its own sums, added in order,
+/// so the bits do not depend on the number of threads.
+class Entry {
+ public:
+  Entry(const DiffusionSpace& space, Monitor* monitor)
+      : space_(space),
+        monitor_(monitor),
+        elements_of_(space.attached, space.grid.cells().size()),
+        parts_(kParts, Depositor(space, elements_of_)) {}
+
+  /// in    flux: one per element; directions: of an element, by its index
+  template <class DirectionsOf>
+  void enter(std::span<const Rgb> flux, const DirectionsOf& directions) {
+    const std::size_t of_part = (flux.size() + kParts - 1) / kParts;
+    parallel_chunks(flux.size(), of_part, [&](std::size_t begin, std::size_t end, std::size_t part) {
+      for (std::size_t i = begin; i < end; ++i) {
+        advance(monitor_, 1);
+        if (!(max_component(flux[i]) > 0) || space_.attached[i].cell == DiffusionGrid::kNone) continue;
+        const Directions from = directions(i);
+        for (std::size_t n = 0; n < from.count; ++n)
+          parts_[part].enter(Vec3d(from.some[n].outward), flux[i] * from.some[n].share, i);
+      }
+    });
   }
-}
+
+  FirstCollisions take() {
+    FirstCollisions sum = parts_.front().take();
+    for (Depositor& part : std::span(parts_).subspan(1)) {
+      const FirstCollisions more = part.take();
+      for (std::size_t i = 0; i < sum.source.size(); ++i) sum.source[i].c += more.source[i].c;
+      for (std::size_t i = 0; i < sum.leaving.size(); ++i) sum.leaving[i] += more.leaving[i];
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t kParts = 4;  // more require more memory
+
+  const DiffusionSpace& space_;
+  Monitor* monitor_;
+  ElementsOfCells elements_of_;
+  std::vector<Depositor> parts_;
+};
 
 }  // namespace
 
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor) {
-  Depositor depositor(space);
+  Entry entry(space, monitor);
   const std::vector<BoundaryElement>& elements = space.boundary.elements;
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
     const std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) {
@@ -413,24 +444,19 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
       return emission(light.lights[l]) * tint *
              (double(space.samples[s].area) * double(light.transfers[l].weights[s]));
     });
-    enter_everywhere(
-        space, flux,
-        [&](std::size_t i) { return towards_light(light.lights[l], elements[i], space.eta(), i); }, depositor,
-        monitor);
+    entry.enter(flux,
+                [&](std::size_t i) { return towards_light(light.lights[l], elements[i], space.eta(), i); });
   }
-  if (light.even.empty()) return depositor.take();
+  if (light.even.empty()) return entry.take();
   const std::vector<Rgb> flux =
       entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
   const DirectionCounts counts(space, flux, light.beside);
-  std::size_t next = 0;
-  enter_everywhere(
-      space, flux,
-      [&](std::size_t i) {
-        const std::size_t count = counts.of(flux[i]);
-        return all_around(elements[i], space.eta(), std::exchange(next, next + count), count);
-      },
-      depositor, monitor);
-  return depositor.take();
+  std::vector<std::size_t> first(flux.size());  // of the elements' directions
+  for (std::size_t i = 1; i < flux.size(); ++i) first[i] = first[i - 1] + counts.of(flux[i - 1]);
+  entry.enter(flux, [&](std::size_t i) {
+    return all_around(elements[i], space.eta(), first[i], counts.of(flux[i]));
+  });
+  return entry.take();
 }
 
 }  // namespace opaline
