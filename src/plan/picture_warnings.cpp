@@ -97,8 +97,7 @@ std::string back_is_visible(const Scene& scene, const World& world, const Vec3d&
         meet({box.low - margin, box.high + margin}, {point, point}))
       return fmt::format(
           "the camera sees the back side of the open translucent mesh '{}', which is black: its winding "
-          "faces "
-          "away; vertex normals towards the camera turn it, or close the mesh",
+          "faces away; vertex normals towards the camera turn it, or close the mesh",
           scene.shapes[m].name);
   }
   return "the camera sees the back side of a translucent surface, which is black; it is inside the body; "
