@@ -11,10 +11,13 @@ namespace {
 
 using Kind = MeshParts::Kind;
 
-constexpr double kMostHoles = 0.25;      // largest area of holes over a part's area for it to count as closed
-constexpr double kSheet = 0.75;          // length of a sheet's area vector over its area
-constexpr double kLeastVolume = 1e-6;    // over area times diagonal: below, an open part is flat
-constexpr double kLeastOneSided = 0.1;   // least volume over magnitudes of a wide open part with an inside
+constexpr double kMostHoles = 0.25;  // largest area of holes over a part's area for it to count as closed
+// Length of the area vector over the area: 0 if closed, 1 if flat, 0.85 for a spherical cap of 45 degrees.
+constexpr double kCurved = 0.6, kSheet = 0.85;
+constexpr double kLeastVolume = 1e-6;  // over area times diagonal: below, an open part is flat
+// Least volume over magnitudes of an open part with an inside: below kCurved, and from there to kSheet, where
+// uneven patches of an outward surface may have a negative volume.
+constexpr double kLeastOneSided = 0.1, kLeastOneSidedIfFlat = 0.5;
 constexpr double kLeastAgreement = 0.9;  // least area with agreeing normals, over that with usable normals
 constexpr double kLeastNormals = 0.1;    // area with usable normals, over the whole
 
@@ -58,9 +61,9 @@ class Chooser {
       return std::abs(m.volume) <= 1e-12 * m.magnitudes ? Shape::none : Shape::solid;
     if (std::abs(m.volume) <= kLeastVolume * m.area * length(m.box.high - m.box.low)) return Shape::sheet;
     if (m.hole_area < kMostHoles * m.area) return Shape::solid;
-    const bool is_sheet =
-        length(m.area_vector) >= kSheet * m.area || std::abs(m.volume) < kLeastOneSided * m.magnitudes;
-    return is_sheet ? Shape::sheet : Shape::wide;
+    const double flatness = length(m.area_vector) / m.area;
+    const double least = flatness < kCurved ? kLeastOneSided : kLeastOneSidedIfFlat;
+    return flatness >= kSheet || std::abs(m.volume) < least * m.magnitudes ? Shape::sheet : Shape::wide;
   }
 
   /// Agreement of a part with its normals: 1, or -1 if opposite; 0 without normals.

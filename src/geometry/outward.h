@@ -18,8 +18,8 @@ enum class Inward : unsigned char {
 /// Classifies parts with inward winding by the reason. A closed part faces outward if its volume is positive.
 /// An inward part inside another part is a cavity and keeps its winding, unless the outermost part around it
 /// is flipped: both are then. An open part with holes below a quarter of its area counts as closed. A wider
-/// open part follows its normals if they agree, otherwise its volume, except for sheets, which have no
-/// inside, and parts intersecting other such parts. The remaining parts follow their common volume if they
+/// open part follows its normals if they agree, otherwise its volume, except for flat and shallow sheets, which
+/// have no inside, and parts intersecting other such parts. The remaining parts follow their common volume if they
 /// nearly close together. Undecided parts keep their winding.
 std::vector<Inward> inward_parts(const WoundMesh& mesh, const MeshParts& parts);
 

@@ -62,14 +62,17 @@ std::vector<float> sampled_brightness(const Image& image) {
   return values.empty() && step > 1 ? brightness(image, 1) : values;
 }
 
-/// True if most covered pixels show the back of a surface; opaque surfaces have no back.
-bool is_inside(const Image& image, const Vec3d& camera) {
+/// A visible point of the back of a translucent surface, mm, if a considerable part of the covered pixels shows
+/// backs; opaque surfaces have none.
+std::optional<Vec3d> visible_back(const Image& image, const Vec3d& camera) {
+  constexpr double kConsiderable = 0.05;
   const std::size_t stride = image.channels.size(), coverage = channel(image, "A");
   const std::array<std::size_t, 3> normal{channel(image, "N.X"), channel(image, "N.Y"),
                                           channel(image, "N.Z")},
       place{channel(image, "P.X"), channel(image, "P.Y"), channel(image, "P.Z")};
-  if (normal[2] == stride || place[2] == stride) return false;
-  std::size_t seen = 0, behind = 0;
+  if (normal[2] == stride || place[2] == stride) return {};
+  std::size_t seen = 0;
+  std::vector<std::size_t> behind;  // pixels
   for (std::size_t at = 0; at < image.pixels.size(); at += stride) {
     const float* const pixel = image.pixels.data() + at;
     if (pixel[coverage] < 1) continue;
@@ -77,9 +80,28 @@ bool is_inside(const Image& image, const Vec3d& camera) {
     for (std::size_t i = 0; i < 3; ++i)
       cosine += double(pixel[normal[i]]) * (double(pixel[place[i]]) - camera[i]);
     ++seen;
-    if (cosine > 0) ++behind;
+    if (cosine > 0) behind.push_back(at);
   }
-  return 2 * behind > seen;
+  if (double(behind.size()) <= kConsiderable * double(seen)) return {};
+  const float* const middle = image.pixels.data() + behind[behind.size() / 2];
+  return Vec3d(double(middle[place[0]]), double(middle[place[1]]), double(middle[place[2]]));
+}
+
+/// The cause of visible backs at a point: an open mesh around it, or a camera inside a body.
+std::string back_is_visible(const Scene& scene, const World& world, const Vec3d& point) {
+  constexpr double kRounding = 1e-4;  // diagonals
+  for (std::size_t m = 0; m < world.meshes.size(); ++m) {
+    const Bounds& box = world.boxes[m];
+    const Vec3d margin(kRounding * length(box.high - box.low));
+    if (scene.shapes[m].medium && world.reports[m].open_edges > 0 &&
+        meet({box.low - margin, box.high + margin}, {point, point}))
+      return fmt::format(
+          "the camera sees the back side of the open translucent mesh '{}', which is black: its winding "
+          "faces away; vertex normals towards the camera turn it, or close the mesh",
+          scene.shapes[m].name);
+  }
+  return "the camera sees the back side of a translucent surface, which is black; it is inside the body; "
+         "move the camera";
 }
 
 /// Pixel of a direction, in the full image. towards: in front of the camera
@@ -298,10 +320,8 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   if (world.meshes.empty() || scene.lights.empty()) return {};  // the plan warns of this
   std::vector<float> values = sampled_brightness(image);
   if (values.empty()) return {nothing_in_view(scene, world)};
-  if (is_inside(image, scene.camera.position))
-    return {
-        "the camera sees the back side of a translucent surface; it is inside the body, or views an open "
-        "mesh; move the camera, or close the mesh"};
+  if (const std::optional<Vec3d> back = visible_back(image, scene.camera.position))
+    return {back_is_visible(scene, world, *back)};
   const double gain = std::exp2(scene.film.exposure);
   const auto quantile = [&](double share) {
     const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));

@@ -12,7 +12,8 @@
 namespace opaline {
 
 /// Warnings of bodies with a model that have considerable parts of other shapes inside: light does not meet those.
-/// Tests some vertices of each shape by a ray; nothing in scenes of thousands of bodies.
+/// Two overlapping bodies are one warning. Tests some points of each shape by a ray; nothing in scenes of thousands
+/// of bodies, and not every pair among millions of triangles.
 std::vector<std::string> warnings_of_shapes_inside(const Scene& scene, const World& world,
                                                    const RayScene& rays, const Plan& plan);
 

@@ -78,8 +78,9 @@ TEST(CliLog, TellsTheModelsError) {
 }
 
 // Claim: a shape inside a translucent body, opaque or of another medium, is reported by methods that ignore it there, and not
-// by `volume`; neither a floor in the plane of its lower face nor a body that touches it is. Source: shapes_inside.h. Fails if:
-// shapes within a body are silent.
+// by `volume`; so are bodies that overlap, without a vertex in one another, once a pair. Neither a floor in the plane of its lower
+// face nor a body that touches it, or reaches 0.1 of 20 mm into it, is. Source: shapes_inside.h. Fails if: shapes within a body
+// are silent, vertices stand for a surface, or both bodies of a pair are named.
 TEST(CliLog, ShapesInsideBodiesAreReported) {
   const ScratchFolder folder;
   const auto warning_of = [&](const std::string& shape, const std::string& method) {
@@ -91,18 +92,23 @@ TEST(CliLog, ShapesInsideBodiesAreReported) {
         "settings": {"bounces": 0, "samples": 500, "until_error": 0.5}})");
     const std::string err =
         run_program({"render", folder.file("a.json"), "-o", folder.file("a.exr"), "--method", method}).err;
-    return contains(err, "cube: the shape 'b' lies inside");
+    EXPECT_FALSE(contains(err, "b: the shape 'cube'")) << err;
+    return contains(err, "cube: the shape 'b' lies");
   };
-  const std::string inside = R"({"name": "b", "box": {"low": [5, 5, 5], "high": [15, 15, 15]}})",
-                    overlapping =
-                        R"({"name": "b", "sphere": {"center": [20, 10, 10], "radius": 8}, "medium": "n"})",
-                    floor =
-                        R"({"name": "b", "quad": {"corner": [-9, 0, -9], "u": [0, 0, 40], "v": [40, 0, 0]}})",
-                    beside =
-                        R"({"name": "b", "box": {"low": [20, 2, 2], "high": [30, 9, 9]}, "medium": "n"})";
+  const std::string
+      inside = R"({"name": "b", "box": {"low": [5, 5, 5], "high": [15, 15, 15]}})",
+      overlapping = R"({"name": "b", "sphere": {"center": [20, 10, 10], "radius": 8}, "medium": "n"})",
+      flush = R"({"name": "b", "box": {"low": [19, 0, 0], "high": [40, 20, 20]}, "medium": "n"})",
+      large = R"({"name": "b", "box": {"low": [-500, -90, -500], "high": [500, 3, 500]}, "medium": "n"})",
+      sunk = R"({"name": "b", "box": {"low": [-50, -90, -50], "high": [50, 0.1, 50]}, "medium": "n"})",
+      floor = R"({"name": "b", "quad": {"corner": [-9, 0, -9], "u": [0, 0, 40], "v": [40, 0, 0]}})",
+      beside = R"({"name": "b", "box": {"low": [20, 2, 2], "high": [30, 9, 9]}, "medium": "n"})";
   for (const char* method : {"auto", "hierarchical"}) {
     EXPECT_TRUE(warning_of(inside, method)) << method;
     EXPECT_TRUE(warning_of(overlapping, method)) << method;
+    EXPECT_TRUE(warning_of(flush, method)) << method;
+    EXPECT_TRUE(warning_of(large, method)) << method;
+    EXPECT_FALSE(warning_of(sunk, method)) << method;
     EXPECT_FALSE(warning_of(floor, method)) << method;
     EXPECT_FALSE(warning_of(beside, method)) << method;
   }

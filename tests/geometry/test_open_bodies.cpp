@@ -89,7 +89,9 @@ std::vector<std::pair<std::string, Soup>> open_bodies() {
   smaller.triangles.pop_back();
   Soup inner_half = half;
   for (Vec3d& p : inner_half.positions) p *= .9;
+  const Soup cap = without(ball, [](const Vec3d& p) { return p.y < std::cos(.3 * M_PI) + 1e-9; });
   return {{"one triangle missing", pierced},
+          {"a cap of 54 degrees", cap},
           {"half a sphere", half},
           {"a bust", bust},
           {"a box without its lid", open_cube},
@@ -134,6 +136,20 @@ TEST(OpenBodies, OpenBodiesOfMixedWindingAreWoundOutward) {
   }
 }
 
+std::string ply_with_normals(const Soup& soup, const std::function<Vec3d(const Vec3d&)>& normal) {
+  std::ostringstream text;
+  text << "ply\nformat ascii 1.0\nelement vertex " << soup.positions.size();
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) text << "\nproperty float " << name;
+  text << "\nelement face " << soup.triangles.size()
+       << "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vec3d& p : soup.positions) {
+    const Vec3d n = normal(p);
+    text << p.x << ' ' << p.y << ' ' << p.z << ' ' << n.x << ' ' << n.y << ' ' << n.z << '\n';
+  }
+  for (const auto& [a, b, c] : soup.triangles) text << "3 " << a << ' ' << b << ' ' << c << '\n';
+  return text.str();
+}
+
 Soup flat_sheet() {
   return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
 }
@@ -160,6 +176,49 @@ TEST(OpenBodies, SheetsGoByTheirNormals) {
     Soup tilted_sheet = sheet;
     for (Vec3d& p : tilted_sheet.positions) p = {p.x, p.y * std::cos(angle), p.y * std::sin(angle) + p.x / 3};
     EXPECT_EQ(load_body(tilted_sheet).report.flipped + load_body(flipped(tilted_sheet)).report.flipped, 0u);
+  }
+}
+
+/// A square sheet in xy of height z(x, y), facing +z.
+Soup relief(const std::function<double(double, double)>& z) {
+  constexpr std::uint32_t kSide = 32;
+  Soup soup;
+  for (std::uint32_t j = 0; j <= kSide; ++j)
+    for (std::uint32_t i = 0; i <= kSide; ++i) {
+      const double x = 2. * i / kSide - 1, y = 2. * j / kSide - 1;
+      soup.positions.push_back({x, y, z(x, y)});
+      if (i == kSide || j == kSide) continue;
+      const std::uint32_t a = j * (kSide + 1) + i, b = a + 1, c = b + kSide + 1, d = c - 1;
+      soup.triangles.push_back({a, b, c});
+      soup.triangles.push_back({a, c, d});
+    }
+  return soup;
+}
+
+// Claim: without normals, shallow and wavy sheets keep their winding, as dishes, terrain and liquids in a glass are as usual as
+// domes. Source: outward.cpp. Tolerance: none. Fails if: the sign of a small volume decides.
+TEST(OpenBodies, ShallowSheetsKeepTheirWinding) {
+  for (const double depth : {.1, .2, .3})
+    for (const Soup& sheet : {relief([&](double x, double y) { return depth * (x * x + y * y); }),
+                              relief([&](double x, double y) { return -depth * (x * x + y * y); }),
+                              relief([&](double x, double y) { return depth * std::sin(5 * x + y); })}) {
+      EXPECT_EQ(load_body(sheet).report.flipped, 0u) << depth;
+      EXPECT_EQ(load_body(flipped(sheet)).report.flipped, 0u) << depth;
+    }
+}
+
+// Claim: normals turn a shallow dish of any file format, also a concave one. Source: outward.h. Tolerance: none. Fails if: the
+// volume decides against normals.
+TEST(OpenBodies, NormalsTurnShallowSheets) {
+  for (const double depth : {-.8, -.2, .2, .8}) {
+    const Soup sheet = relief([&](double x, double y) { return depth * (x * x + y * y); });
+    const auto up = [&](const Vec3d& p) { return Vec3d{-2 * depth * p.x, -2 * depth * p.y, 1}; };
+    for (const bool is_turned : {false, true}) {
+      const Soup soup = is_turned ? flipped(sheet) : sheet;
+      const std::size_t expected = is_turned ? soup.triangles.size() : 0;
+      EXPECT_EQ(load_body("a.obj", obj_with_normals(soup, up)).report.flipped, expected) << depth;
+      EXPECT_EQ(load_body("a.ply", ply_with_normals(soup, up)).report.flipped, expected) << depth;
+    }
   }
 }
 

@@ -88,6 +88,31 @@ TEST(PictureWarnings, CameraInsideABody) {
     EXPECT_EQ(text.find("inside"), std::string::npos) << text;
 }
 
+// Claim: an open translucent sheet seen from behind is named with its winding, also beside a larger opaque floor; from its
+// front, or opaque, it is not. Source: picture_warnings.h. Fails if: only most of the image counts, or the sheet is taken for a
+// camera inside a body.
+TEST(PictureWarnings, SheetSeenFromBehind) {
+  Scene scene = lit_ball();
+  scene.shapes[0].source = QuadShape{{-10, -10, 0}, {0, 20, 0}, {20, 0, 0}};
+  scene.shapes.push_back(scene.shapes[0]);
+  scene.shapes[1].name = "floor";
+  scene.shapes[1].source = QuadShape{{-30, -30, -9}, {60, 0, 0}, {0, 60, 0}};
+  scene.shapes[1].medium.reset();
+  const auto backs = [&] {
+    const Prepared sheet(scene);
+    std::string all;
+    for (const std::string& text : picture_warnings(sheet.scene, sheet.world, sheet.picture())) all += text;
+    return all;
+  };
+  EXPECT_NE(backs().find("the back side of the open translucent mesh 'shape'"), std::string::npos) << backs();
+  EXPECT_NE(backs().find("winding"), std::string::npos) << backs();
+  scene.shapes[0].medium.reset();
+  EXPECT_EQ(backs(), "");
+  scene.shapes[0].medium = 0;
+  scene.shapes[0].source = QuadShape{{-10, -10, 0}, {20, 0, 0}, {0, 20, 0}};
+  EXPECT_EQ(backs(), "");
+}
+
 // Claim: each light that reaches no surface is named, whatever the other lights do. Source: picture_warnings.h. By hand: a
 // quad in the ball's bounding box that faces its corner has the corner before it, not the ball; the spot 60 mm from a ball
 // of 10 mm that points 15 degrees beside its middle, which asin(1 / 6) = 9.6 degrees enclose, misses it by a cone of 5
