@@ -55,17 +55,23 @@ struct NamedFiles {
   std::size_t line = 0;
 };
 
+/// A material with faces.
+struct UsedMaterial {
+  std::string name;
+  std::size_t line = 0;  ///< line of its first usemtl with faces
+};
+
 /// Statements of an OBJ file besides its faces.
 struct ObjOutline {
   bool has_uvs = false, has_colors = false;
   std::vector<Vec3d> vertices;
   std::vector<NamedFiles> libraries;
-  std::vector<std::string> materials;  ///< materials with faces, in the order of the file
+  std::vector<UsedMaterial> materials;  ///< in the order of the file
 };
 
 ObjOutline read_outline(const std::string& text) {
   ObjOutline outline;
-  std::string material(kNoMaterial);
+  UsedMaterial material{std::string(kNoMaterial)};
   std::set<std::string> used;
   for_each_line(text, [&](std::string_view line, std::size_t number) {
     const std::string_view keyword = next_word(line);
@@ -80,8 +86,8 @@ ObjOutline read_outline(const std::string& text) {
     } else if (keyword == "mtllib") {
       outline.libraries.push_back({std::string(trimmed(line)), number});
     } else if (keyword == "usemtl") {
-      material = obj_material_name(trimmed(line));
-    } else if (keyword == "f" && used.insert(material).second) {
+      material = {obj_material_name(trimmed(line)), number};
+    } else if (keyword == "f" && used.insert(material.name).second) {
       outline.materials.push_back(material);
     }
   });
@@ -106,7 +112,8 @@ class ObjImporter {
     scene_.has_vertex_colors = outline.has_colors;
     scene_.translated.push_back("OBJ has no unit: lengths are read as millimetres");
     for (const NamedFiles& library : outline.libraries) read_libraries(library);
-    for (const std::string& material : outline.materials) add_shape(material);
+    for (const UsedMaterial& material : outline.materials) add_shape(material);
+    warn_of_missing_materials();
     return std::move(scene_);
   }
 
@@ -175,13 +182,40 @@ class ObjImporter {
   /// Warns of a statement of a material.
   void warn(const MtlMaterial& material, const MtlStatement& statement, const std::string& complaint) {
     warn(material.file, statement.line,
-         statement.keyword + (statement.text.empty() ? "" : ' ' + in_quotes(statement.text)) +
-             " of material " + in_quotes(material.name) + ' ' + complaint);
+         statement.keyword + (statement.text.empty() ? "" : ' ' + in_quotes(statement.text)) + " of " +
+             material_label(material.name) + ' ' + complaint);
+  }
+
+  /// Warns of ignored statements of a material, once, at the first.
+  void warn_of_ignored(const MtlMaterial& material, const std::vector<MtlStatement>& ignored,
+                       const std::string& reason) {
+    if (ignored.empty()) return;
+    std::vector<std::string> keywords;
+    for (const MtlStatement& statement : ignored)
+      if (std::ranges::find(keywords, statement.keyword) == keywords.end())
+        keywords.push_back(statement.keyword);
+    warn(material.file, ignored.front().line,
+         in_a_row(keywords) + " of " + material_label(material.name) +
+             (keywords.size() == 1 ? " is" : " are") + " ignored: " + reason);
+  }
+
+  /// Warns of the materials that are in no library, once, at the first.
+  void warn_of_missing_materials() {
+    constexpr std::size_t kMostNamed = 3;
+    if (missing_.empty()) return;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < std::min(kMostNamed, missing_.size()); ++i)
+      names.push_back(in_quotes(missing_[i].name));
+    if (missing_.size() > kMostNamed) names.push_back(fmt::format("{} more", missing_.size() - kMostNamed));
+    warn(path_, missing_.front().line,
+         fmt::format("{} {}: not found in any library; uses grey",
+                     missing_.size() == 1 ? "material" : "materials", in_a_row(names)));
   }
 
   Surface surface_of(const MtlMaterial& material) {
     Surface surface;
     surface.color = kGrey;
+    std::vector<MtlStatement> emission, transparency;
     for (const MtlStatement& statement : material.statements) {
       const MtlUse use = use_of(statement);
       const bool needs_uvs = use == MtlUse::color_map || use == MtlUse::bump || use == MtlUse::normal_map;
@@ -193,13 +227,19 @@ class ObjImporter {
         take_picture(material, statement, surface);
       else if (needs_uvs)
         take_bump(material, statement, surface);
+      else if (use == MtlUse::emission)
+        emission.push_back(statement);
+      else if (use == MtlUse::transparency)
+        transparency.push_back(statement);
       else if (use == MtlUse::without_analogue)
         add_unused(surface, statement.keyword);
       else if (use == MtlUse::unknown)
         warn(material.file, statement.line,
-             "the statement " + in_quotes(statement.keyword) + " of material " + in_quotes(material.name) +
+             "the statement " + in_quotes(statement.keyword) + " of " + material_label(material.name) +
                  " is unknown and ignored" + mtl_suggestion(statement.keyword));
     }
+    warn_of_ignored(material, emission, "emission is not supported");
+    warn_of_ignored(material, transparency, "transparency is not supported; the surface renders opaque");
     return surface;
   }
 
@@ -239,7 +279,7 @@ class ObjImporter {
 
   static std::string label_of(const MtlMaterial& material, const MtlStatement& statement,
                               const MtlTexture& texture) {
-    return statement.keyword + ' ' + in_quotes(texture.name) + " of material " + in_quotes(material.name);
+    return statement.keyword + ' ' + in_quotes(texture.name) + " of " + material_label(material.name);
   }
 
   /// The file as an image; null after a warning: it cannot be read.
@@ -280,23 +320,26 @@ class ObjImporter {
     surface.bump = {is_normal_map ? "normal_map" : "bump_map", statement.keyword, std::move(json)};
   }
 
-  void add_shape(const std::string& material) {
+  void add_shape(const UsedMaterial& used) {
+    const std::string& material = used.name;
     const std::string name = names_.take(material == kNoMaterial ? "" : material, "shape");
     scene_.shapes.push_back({{"name", name}, {"file", mesh_path_}, {"part", material}});
     const auto found = materials_.find(material);
     const Surface surface = found == materials_.end() ? Surface{} : surface_of(found->second);
+    if (found == materials_.end() && material != kNoMaterial && !scene_.has_vertex_colors)
+      missing_.push_back(used);
     if (const Json reflectance = reflectance_of(material, surface); !reflectance.is_null())
       scene_.shapes.back()["reflectance"] = reflectance;
     if (surface.bump) add_bump(material, *surface.bump);
     if (!surface.unused.empty())
-      scene_.not_carried.push_back("material " + in_quotes(material) + ": " + in_a_row(surface.unused) +
+      scene_.not_carried.push_back(material_label(material) + ": " + in_a_row(surface.unused) +
                                    (surface.unused.size() == 1 ? " is" : " are") + " ignored");
   }
 
   void add_bump(const std::string& material, const Bump& bump) {
     scene_.shapes.back()[bump.key] = bump.texture;
     const double scale = bump.texture.value("scale", 1.0);
-    scene_.translated.push_back(fmt::format("material {}: {} -> {} {}, {}", in_quotes(material), bump.keyword,
+    scene_.translated.push_back(fmt::format("{}: {} -> {} {}, {}", material_label(material), bump.keyword,
                                             bump.key, bump.texture["texture"].get<std::string>(),
                                             bump.key == "bump_map"
                                                 ? fmt::format("white {:.4g} mm high", scale)
@@ -306,7 +349,7 @@ class ObjImporter {
   /// Null: the vertices have it.
   Json reflectance_of(const std::string& material, const Surface& surface) {
     const Vec3d reflectance = surface.color.value_or(kGrey);
-    const std::string label = "material " + in_quotes(material);
+    const std::string label = material_label(material);
     if (surface.picture) {
       Json texture = surface.picture->texture;
       const auto name = texture["texture"].get<std::string>();
@@ -325,8 +368,6 @@ class ObjImporter {
     if (surface.color)
       scene_.translated.push_back(
           fmt::format("{}: Kd -> reflectance {} (opaque)", label, short_triple(reflectance)));
-    else if (material != kNoMaterial)
-      scene_.not_carried.push_back(label + ": not found in any library; uses grey");
     return triple_json(reflectance);
   }
 
@@ -336,6 +377,7 @@ class ObjImporter {
   UniqueNames names_;
   bool has_uvs_ = false;
   std::map<std::string, MtlMaterial> materials_;  // by name
+  std::vector<UsedMaterial> missing_;             // in no library
 };
 
 }  // namespace

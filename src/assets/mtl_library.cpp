@@ -86,7 +86,11 @@ MtlUse use_of(const MtlStatement& statement) {
   if (keyword == "bump" || keyword == "map_bump") return MtlUse::bump;
   if (keyword == "norm" || keyword == "map_norm") return MtlUse::normal_map;
   if (!is_known(keyword)) return MtlUse::unknown;
-  return has_no_effect(keyword, statement.text) ? MtlUse::no_effect : MtlUse::without_analogue;
+  if (has_no_effect(keyword, statement.text)) return MtlUse::no_effect;
+  if (keyword == "ke" || keyword == "map_ke") return MtlUse::emission;
+  for (const char* other : {"d", "tr", "tf", "map_d", "map_tr", "map_tf"})
+    if (keyword == other) return MtlUse::transparency;
+  return MtlUse::without_analogue;
 }
 
 std::string mtl_suggestion(const std::string& keyword) {
@@ -105,8 +109,10 @@ MtlColor read_mtl_color(std::string_view text) {
   const Vec3d given = numbers.size() == 1 ? Vec3d(numbers[0]) : Vec3d(numbers[0], numbers[1], numbers[2]);
   const Vec3d value = component_min(component_max(given, Vec3d(0)), Vec3d(1));
   if (value == given) return {value, {}};
-  if (max_component(given) <= 1) return {value, "is below 0 and is clamped to " + rounded(value)};
-  std::string complaint = "is above 1 and is clamped to " + rounded(value);
+  const bool is_below = min_component(given)<0, is_above = max_component(given)> 1;
+  std::string complaint = std::string("is ") + (is_below ? "below 0" : "") +
+                          (is_below && is_above ? " and " : "") + (is_above ? "above 1" : "") +
+                          " and is clamped to " + rounded(value);
   if (may_count_to_255(given) && max_component(given) > 2)
     complaint += "; the values seem to range to 255: for a range of 0 to 1, write " + rounded(given / 255.);
   return {value, complaint};

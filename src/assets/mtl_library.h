@@ -39,6 +39,8 @@ enum class MtlUse {
   color_map,         ///< map_Kd
   bump,              ///< bump, map_bump
   normal_map,        ///< norm
+  emission,          ///< Ke, map_Ke
+  transparency,      ///< d, Tr, Tf and their maps
   no_effect,         ///< default values, and options of other statements
   without_analogue,  ///< would change the surface
   unknown

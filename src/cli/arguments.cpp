@@ -172,11 +172,18 @@ const CLI::App& called(const CLI::App& app) {
   return chosen.empty() ? app : called(*chosen.front());
 }
 
+/// "cache ls"; empty for the program itself.
+std::string words_to(const CLI::App& command) {
+  std::string words = command.get_parent() != nullptr ? command.get_name() : "";
+  for (const CLI::App* at = command.get_parent(); at != nullptr && at->get_parent() != nullptr;
+       at = at->get_parent())
+    words = at->get_name() + ' ' + words;
+  return words;
+}
+
 std::string hint(const CLI::App& command) {
-  std::string names;
-  for (const CLI::App* at = &command; at->get_parent() != nullptr; at = at->get_parent())
-    names = at->get_name() + ' ' + names;
-  return fmt::format("; see opaline {}--help", names);
+  const std::string words = words_to(command);
+  return fmt::format("; see opaline {}{}--help", words, words.empty() ? "" : " ");
 }
 
 std::vector<std::string_view> commands_of(const CLI::App& app) {
@@ -237,6 +244,24 @@ std::vector<std::string> commands_with(const CLI::App& parent, const std::string
   return found;
 }
 
+std::string similar_option(const CLI::App& command, const std::string& name) {
+  const std::vector<std::string> names = option_names(command);
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return did_you_mean(name, views);
+}
+
+/// The first command below one with a similar option, with the suggestion: " (did you mean '--spp'?), an option of
+/// opaline render".
+std::string similar_elsewhere(const CLI::App& parent, const std::string& name) {
+  for (const std::string_view word : commands_of(parent)) {
+    const CLI::App& command = *parent.get_subcommand(std::string(word));
+    if (const std::string near = similar_option(command, name); !near.empty())
+      return near + ", an option of opaline " + words_to(command);
+    if (std::string near = similar_elsewhere(command, name); !near.empty()) return near;
+  }
+  return {};
+}
+
 Error unknown_option(const CLI::App& app, const CLI::App& command, const std::string& text) {
   const std::string name = text.substr(0, text.find('='));
   const std::vector<std::string> names = option_names(command);
@@ -250,10 +275,10 @@ Error unknown_option(const CLI::App& app, const CLI::App& command, const std::st
   if (meant.empty())
     std::ranges::copy_if(names, std::back_inserter(meant),
                          [&](const std::string& word) { return word.starts_with(beginning); });
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  const std::string near = !meant.empty() ? fmt::format(" (did you mean '{}'?)", fmt::join(meant, "' or '"))
-                           : is_letter    ? ""
-                                          : did_you_mean(name, views);
+  std::string near = !meant.empty() ? fmt::format(" (did you mean '{}'?)", fmt::join(meant, "' or '"))
+                     : is_letter    ? ""
+                                    : similar_option(command, name);
+  if (near.empty() && !is_letter) near = similar_elsewhere(app, name);
   return usage_error("unknown option '" + printable(name) + "'" + near + hint(command));
 }
 

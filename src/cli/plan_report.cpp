@@ -14,6 +14,7 @@
 #include "plan/expected_seconds.h"
 #include "scene/names.h"
 #include "subsurface/method.h"
+#include "values/nearest_name.h"
 #include "values/override_key.h"
 
 namespace opaline {
@@ -79,7 +80,7 @@ void add_model(Paragraphs& plan, const Scene& scene, const BodyPlan& group, doub
 void add_group(Paragraphs& plan, const Scene& scene, const World& world, const BodyPlan& group) {
   add_row(plan, "translucent",
           fmt::format("{} of {}: {:.4g} mm^2, {}", group.name, scene.media[group.medium].name, group.area,
-                      mean_free_path_text(group)));
+                      mean_free_path_text(scene, group)));
   add_model(plan, scene, group, share_across_air(scene, world, group));
   if (!method_of(scene.settings.method).needs_samples()) return;
   add_row(plan, "", samples_text(group));
@@ -234,6 +235,9 @@ void print_plates(const Log& log, const std::vector<PlateModel>& plates) {
 }
 
 void warn_of_unused_media(const Log& log, std::span<const std::string> overrides, const Scene& scene) {
+  std::vector<std::string_view> used;
+  for (const Shape& shape : scene.shapes)
+    if (shape.medium) used.push_back(scene.media[*shape.medium].name);
   for (std::size_t m = 0; m < scene.media.size(); ++m) {
     const std::string prefix = "media." + scene.media[m].name + ".";
     const bool is_set =
@@ -241,11 +245,9 @@ void warn_of_unused_media(const Log& log, std::span<const std::string> overrides
     const bool is_used =
         std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return shape.medium == m; });
     if (is_set && !is_used)
-      print_warning(
-          log,
-          fmt::format(
-              "no shape uses the medium '{0}' of --set {1}...; assign it with --set shapes.NAME.medium={0}",
-              scene.media[m].name, prefix));
+      print_warning(log, fmt::format("no shape uses the medium '{0}' of --set {1}...{2}; assign it with "
+                                     "--set shapes.NAME.medium={0}",
+                                     scene.media[m].name, prefix, did_you_mean(scene.media[m].name, used)));
   }
 }
 

@@ -49,7 +49,10 @@ void print_costs(const Summary& summary) {
   shown.push_back(total_of(summary.costs));
   for (const StageCost& cost : shown)
     write_line(stdout, fmt::format("{:<12}{:>9.3f} s wall{:>9.3f} s CPU{}", cost.stage, cost.wall_seconds,
-                                   cost.cpu_seconds, cost.stage == "choosing" ? of_trials : ""));
+                                   cost.cpu_seconds,
+                                   cost.stage == "choosing"  ? of_trials
+                                   : cost.stage == "bounces" ? "   re-entry included"
+                                                             : ""));
 }
 
 /// Error due to settings: samples, tolerance, shadow rays, cells.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/units.h"
 #include "geometry/orient.h"
 #include "geometry/repair_mesh.h"
 #include "geometry/topology.h"
@@ -70,9 +71,9 @@ class MeshChecker {
   /// Reuses the results of an earlier check if they still apply.
   bool recall() {
     if (memory_ == nullptr || !memory_->holds || memory_->fill_holes != settings_.fill_holes ||
-        memory_->may_be_open != settings_.may_be_open || memory_->same != same_ || memory_->site != site_ ||
-        memory_->has_inside != settings_.has_inside || memory_->given != source_.triangles ||
-        memory_->origins.empty() != origins_.empty() || would_turn(memory_->mended, memory_->parts))
+        memory_->same != same_ || memory_->site != site_ || memory_->has_inside != settings_.has_inside ||
+        memory_->given != source_.triangles || memory_->origins.empty() != origins_.empty() ||
+        would_turn(memory_->mended, memory_->parts))
       return false;
     memory_->recalled = true;
     source_.triangles = memory_->mended;
@@ -100,7 +101,6 @@ class MeshChecker {
     memory_->holds = !places_matter_;
     if (places_matter_) return;
     memory_->fill_holes = settings_.fill_holes;
-    memory_->may_be_open = settings_.may_be_open;
     memory_->has_inside = settings_.has_inside;
     memory_->same = std::move(same_);
     memory_->site = std::move(site_);
@@ -203,12 +203,25 @@ class MeshChecker {
            ", were flipped");
   }
 
+  double area_of(const std::vector<Triangle>& triangles) const {
+    const std::vector<Vec3d>& p = source_.positions;
+    double area = 0;
+    for (const auto& [a, b, c] : triangles) area += 0.5 * length(cross(p[b] - p[a], p[c] - p[a]));
+    return area;
+  }
+
+  void warn_of_filling(const HoleFilling& filling) {
+    const bool is_default = settings_.fill_holes == FillHoles::if_small;
+    warn(std::to_string(filling.filled) + (is_default ? " small" : "") +
+         (filling.filled == 1 ? " hole, " : " holes, ") +
+         short_percent(area_of(filling.triangles) / area_of(source_.triangles)) +
+         " of the mesh's area, closed" + (is_default ? " (\"fill_holes\": false leaves them open)" : ""));
+  }
+
   void fill(const EdgeTable& edges) {
     const std::vector<Edge> open = open_edges(edges);
     const HoleFilling filling = fill_holes(source_.positions, all_sites(), open, settings_.fill_holes);
-    if (settings_.fill_holes == FillHoles::if_small && filling.filled > 0)
-      warn(std::to_string(filling.filled) + (filling.filled == 1 ? " small hole" : " small holes") + ", " +
-           std::to_string(open.size()) + " boundary edges, closed (\"fill_holes\": false leaves them open)");
+    if (filling.filled > 0) warn_of_filling(filling);
     source_.triangles.insert(source_.triangles.end(), filling.triangles.begin(), filling.triangles.end());
     if (!origins_.empty()) origins_.resize(source_.triangles.size(), kNew);
     report_.holes_filled = filling.filled;
@@ -223,7 +236,7 @@ class MeshChecker {
       report_.open_edges += corners.size() == 1;
       report_.non_manifold_edges += corners.size() > 2;
     });
-    if (report_.open_edges > 0 && !settings_.may_be_open)
+    if (report_.open_edges > 0 && settings_.has_inside)
       warn("open mesh: " + std::to_string(report_.open_edges) + " boundary edges; light can leak");
     if (report_.non_manifold_edges > 0)
       warn("non-manifold mesh: " + std::to_string(report_.non_manifold_edges) +

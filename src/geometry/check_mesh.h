@@ -15,16 +15,15 @@ namespace opaline {
 struct CheckSettings {
   std::string name;  ///< the file or shape, for messages
   FillHoles fill_holes = FillHoles::none;
-  bool smooth = true;        ///< gives vertices normals
-  bool may_be_open = false;  ///< no warnings of boundary edges
-  bool has_inside = false;   ///< winds open parts outward, too
+  bool smooth = true;       ///< gives vertices normals
+  bool has_inside = false;  ///< winds open parts outward, too, and warns of boundary edges
 };
 
 /// Results of mesh checks depending on connectivity only, not on positions.
 struct CheckMemory {
   bool holds = false, recalled = false;  ///< recalled: the last call used it
   FillHoles fill_holes = FillHoles::none;
-  bool may_be_open = false, has_inside = false;
+  bool has_inside = false;
   std::vector<Triangle> given;  ///< before anything was done to them
   std::vector<std::uint32_t> same,
       site;                      ///< first vertex at the same position, with its normal and without

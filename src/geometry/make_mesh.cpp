@@ -116,8 +116,6 @@ CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh me
   settings.name = name;
   settings.smooth = shape.normals == NormalMode::smooth;
   const auto* file = std::get_if<MeshFile>(&shape.source);
-  const bool is_part = file != nullptr && !file->part.empty();  // part of an asset; its surfaces may be open
-  settings.may_be_open = (is_part || std::holds_alternative<QuadShape>(shape.source)) && !shape.medium;
   settings.has_inside = shape.medium.has_value();
   if (file != nullptr && file->fill_holes)
     settings.fill_holes = *file->fill_holes ? FillHoles::all : FillHoles::none;

@@ -106,9 +106,13 @@ std::string samples_text(const BodyPlan& group) {
   return fmt::format("{}, spacing {:.4g} mm: {}", count, group.spacing, group.reason);
 }
 
-std::string mean_free_path_text(const BodyPlan& group) {
+std::string mean_free_path_text(const Scene& scene, const BodyPlan& group) {
   if (!(group.smallest_mean_free_path > 0)) return "no mean free path (diffuse reflection)";
-  return fmt::format("mean free path {:.4g} mm (smallest channel)", group.smallest_mean_free_path);
+  const DiffuseProfile profile = make_diffuse_profile(scene.media[group.medium]);
+  bool scatters = true;  // inside, in all channels
+  for (std::size_t c = 0; c < 3; ++c) scatters &= profile.total[c] > 0 && profile.mean_free_path[c] > 0;
+  return fmt::format("mean free path {:.4g} mm (smallest channel{})", group.smallest_mean_free_path,
+                     scatters ? "" : " that scatters inside");
 }
 
 double widest_cell(const Settings& settings) {

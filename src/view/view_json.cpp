@@ -57,7 +57,7 @@ Json preset_json(std::string_view name) {
 
 Json group_json(const Scene& scene, const BodyPlan& group) {
   std::string text = fmt::format("{} of {}: {:.4g} mm², {}", group.name, scene.media[group.medium].name,
-                                 group.area, mean_free_path_text(group));
+                                 group.area, mean_free_path_text(scene, group));
   if (method_of(scene.settings.method).needs_samples()) text += "; " + samples_text(group);
   text += "; profile " + model_text(group.model);
   const std::string error = model_error_text(group.model, group.method, !leaves_out_reentry(scene, group));

@@ -54,6 +54,7 @@ TEST(MtlMaterials, ColorsOutOfRangeAreReported) {
       "[0.8, 0.098, 0.098]");
   check("1.5 0.2 0.2", {1, .2, .2}, "is above 1 and is clamped to [1, 0.2, 0.2]");
   check("-1", Rgb(0), "is below 0 and is clamped to [0, 0, 0]");
+  check("-3 1 5", {0, 1, 1}, "is below 0 and above 1 and is clamped to [0, 1, 1]");
   check("0.3 0.2", Rgb(.5), "has 2 numbers instead of one or three and is ignored");
   check("red", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is ignored");
   check("nan 0 0", Rgb(.5), "is not a colour of one or three numbers from 0 to 1 and is ignored");
@@ -112,11 +113,44 @@ TEST(MtlMaterials, StatementsWithoutAnalogueAreReportedTogether) {
       "Ps 0.2\nPc 0\nTf 0.5 0.5 0.5\naniso 0.5\nanisor 0.1\nmap_Pr p.png\nd 0.5\nTr 0\nKm 0\nKs 0.4 0.5 "
       "0.5\n");
   const ImportedAsset import = folder.import();
-  ASSERT_EQ(import.not_carried.size(), 1u);
-  EXPECT_EQ(import.not_carried[0], "material 'red': Ks, Pr, Pm, Ps, Tf, aniso, map_Pr and d are ignored");
+  ASSERT_EQ(import.not_carried.size(), 2u);
+  EXPECT_EQ(import.not_carried[1], "material 'red': Ks, Pr, Pm, Ps, aniso and map_Pr are ignored");
   EXPECT_TRUE(MtlFolder("newmtl red\nKd 0.2\nPr 1\nPm 0.0\nTf 1 1 1\nd 1.0\nKs 0\naniso 0\n")
                   .import()
                   .not_carried.empty());
+}
+
+// Claim: emission and transparency are one warning each for a material, at their first statement, in any case. Source: by
+// hand. Tolerance: none. Fails if: they are only listed among unused statements, or once per statement.
+TEST(MtlMaterials, EmissionAndTransparencyAreWarnings) {
+  EXPECT_EQ(
+      warnings_of("newmtl red\nKd 0.2\nKe 1 1 1\nmap_Ke p.png\nd 0.4\nTf 0.9 1 1\nke 2\nd 0.4\n"),
+      "a.mtl:3: Ke, map_Ke and ke of material 'red' are ignored: emission is not supported\n"
+      "a.mtl:5: d and Tf of material 'red' are ignored: transparency is not supported; the surface renders "
+      "opaque\n");
+  EXPECT_EQ(warnings_of("newmtl red\nTr 0.5\n"),
+            "a.mtl:2: Tr of material 'red' is ignored: transparency is not supported; the surface renders "
+            "opaque\n");
+  EXPECT_EQ(warnings_of("newmtl red\nKe 0 0 0\nd 1\nTr 0\nTf 1 1 1\nnewmtl unused\nKe 1\nd 0.5\n"), "");
+}
+
+// Claim: materials that are in no library are one warning at the first usemtl, which names some of them. Source: by hand.
+// Tolerance: none. Fails if: they are grey in silence, or each is a line of its own.
+TEST(MtlMaterials, MissingMaterialsAreOneWarning) {
+  const MtlFolder folder("newmtl red\nKd 0.2\n");
+  const auto warnings = [&](const std::string& names) {
+    std::string text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for (const char name : names) text += std::string("usemtl ") + name + "\nf 1 2 3\n";
+    put_bytes(folder.file("a.obj"), text + "usemtl red\nf 1 2 3\n");
+    return folder.import().warnings;
+  };
+  const std::string place = folder.file("a.obj") + ":6: ";
+  EXPECT_EQ(warnings(""), std::vector<std::string>{});
+  EXPECT_EQ(warnings("x"), std::vector{place + "material 'x': not found in any library; uses grey"});
+  EXPECT_EQ(warnings("xyx"),
+            std::vector{place + "materials 'x' and 'y': not found in any library; uses grey"});
+  EXPECT_EQ(warnings("abcde"),
+            std::vector{place + "materials 'a', 'b', 'c' and 2 more: not found in any library; uses grey"});
 }
 
 // Claim: a damaged image is a warning by the library's line, the material and the image, as a missing one is, and Kd remains.

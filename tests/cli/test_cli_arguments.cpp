@@ -131,6 +131,12 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"info", scene, "--target-error", "5%"}, "'--target-error' (an option of opaline render); see"},
       {{"render", scene, "-o", out, "--fail-above=1%"}, "'--fail-above' (an option of opaline compare); see"},
       {{"compare", out, out, "--spp", "4"}, "'--spp' (an option of opaline render, view, info); see"},
+      {{"info", scene, "--target-eror", "5%"},
+       "'--target-eror' (did you mean '--target-error'?), an option of opaline render; see opaline info "
+       "--help"},
+      {{"cache", "ls", out, "--fail-abov=1%"},
+       "(did you mean '--fail-above'?), an option of opaline compare; see"},
+      {{"info", scene, "--siz", "5GB"}, "(did you mean '--size'?), an option of opaline cache prune; see"},
       {{"render", scene, "-o", out, "--reindex"}, "unknown option '--reindex'; see"},
       {{"render", scene, "-o", out, "--preset", "marble"},
        "unknown option '--preset' (did you mean '--set media.NAME.preset=VALUE'?)"},

@@ -268,8 +268,8 @@ TEST(CliFailures, OutputsAreNoInputs) {
   EXPECT_EQ(bytes_of(place + "a.exr"), before);
 }
 
-// Claim: a medium that --set changes and no shape has is reported, one that a shape has is not. Fails if a misspelt name of a
-// medium renders the old image without a word.
+// Claim: a medium that --set changes and no shape has is reported, with a used one of similar name; one that a shape has is not.
+// Fails if a misspelt name of a medium renders the old image without a word.
 TEST(CliFailures, UnusedMediaAreReported) {
   const SceneFolder folder;
   const auto warnings = [&](const std::string& name) {
@@ -278,6 +278,12 @@ TEST(CliFailures, UnusedMediaAreReported) {
   EXPECT_TRUE(contains(warnings("wax"), "no shape uses the medium 'wax' of --set media.wax...."))
       << warnings("wax");
   EXPECT_EQ(warnings("marble"), "");
+  EXPECT_FALSE(contains(warnings("wax"), "did you mean"));
+  const Outcome similar = run_program({"info", folder.scene, "--set", "media.jade.preset=marble", "--set",
+                                       "shapes.ball.medium=jade", "--set", "media.jede.preset=marble"});
+  EXPECT_TRUE(contains(
+      similar.err, "no shape uses the medium 'jede' of --set media.jede.... (did you mean 'jade'?); assign"))
+      << similar.err;
 }
 
 // Claim: a floor so large that rays from it start visibly above it is reported with the shape that it dwarfs, one of usual size is

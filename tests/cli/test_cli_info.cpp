@@ -29,6 +29,21 @@ TEST(CliInfo, PlanAsTextAndJson) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
+// Claim: the plan's mean free path is that of the smallest channel, or of the smallest that scatters inside where another does not.
+// Source: a channel of radius 0 reflects diffusely. Fails if: 0.5 mm is called the smallest of 3, 0.5 and 0 mm.
+TEST(CliInfo, MeanFreePathNamesItsChannels) {
+  const SceneFolder folder;
+  const auto info = [&](const std::string& radius) {
+    return run_program({"info", folder.scene, "--set",
+                        "media.marble={\"subsurface_color\": 0.8, \"subsurface_radius\": " + radius + "}"})
+        .out;
+  };
+  EXPECT_TRUE(contains(info("[3, 0.5, 1]"), "mean free path 0.5 mm (smallest channel)"))
+      << info("[3, 0.5, 1]");
+  EXPECT_TRUE(contains(info("[3, 0.5, 0]"), "mean free path 0.5 mm (smallest channel that scatters inside)"))
+      << info("[3, 0.5, 0]");
+}
+
 // Claim: the model's error in a thin plate is said, beside random walks; not where a plate is thick, or a
 // body is none. Fails if: the truth is left out, or a ball is taken for a plate.
 TEST(CliInfo, ModelErrorOfPlates) {

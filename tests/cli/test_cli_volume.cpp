@@ -197,6 +197,20 @@ TEST(CliVolume, CellsLeaveOpenMeshesToProfiles) {
   EXPECT_EQ(render("volume_diffusion"), render("hierarchical"));
 }
 
+// Claim: the closing line of bounces says that re-entry is part of it. Source: the plan's stage "re-entry". Fails if: a body that
+// gathers its own light alone has a line of bounces without a word of re-entry.
+TEST(CliVolume, ClosingLinesNameReentry) {
+  const SceneFolder folder;
+  const std::string balls =
+      R"(shapes=[{"name":"a","sphere":{"radius":10},"medium":"marble","group":"g"},)"
+      R"({"name":"b","sphere":{"radius":4,"center":[30,0,0]},"medium":"marble","group":"g"}])";
+  const Outcome outcome = run_program({"render", folder.scene, "-o", folder.file("a.exr"), "--method",
+                                       "volume_diffusion", "--set", balls, "--set", "settings.cell_size=4"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "\n            re-entry: ")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, " s CPU   re-entry included\n")) << outcome.out;
+}
+
 // Claim: a warning reports the part of a body's surface that cells leave out. Source: volume_diffusion_method.cpp.
 // Fails if: a ball in a ball causes no warning, or two separate balls cause one.
 TEST(CliVolume, CellsSayWhatTheyLeaveOut) {

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "asset_files/asset_file.h"
+
 namespace opaline {
 namespace {
 
@@ -16,6 +18,10 @@ bool is_utf8(const std::string& text) {
 }
 
 }  // namespace
+
+std::string material_label(std::string_view name) {
+  return name == kNoMaterial ? "faces without a material" : "material " + in_quotes(name);
+}
 
 std::string obj_material_name(std::string_view text) {
   if (text.empty()) return std::string(kNoMaterial);
