@@ -109,7 +109,8 @@ MtlColor read_mtl_color(std::string_view text) {
   const Vec3d given = numbers.size() == 1 ? Vec3d(numbers[0]) : Vec3d(numbers[0], numbers[1], numbers[2]);
   const Vec3d value = component_min(component_max(given, Vec3d(0)), Vec3d(1));
   if (value == given) return {value, {}};
-  const bool is_below = min_component(given)<0, is_above = max_component(given)> 1;
+  const bool is_below = min_component(given) < 0;
+  const bool is_above = max_component(given) > 1;
   std::string complaint = std::string("is ") + (is_below ? "below 0" : "") +
                           (is_below && is_above ? " and " : "") + (is_above ? "above 1" : "") +
                           " and is clamped to " + rounded(value);
