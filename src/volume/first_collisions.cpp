@@ -451,7 +451,7 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
   const std::vector<Rgb> flux =
       entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
   const DirectionCounts counts(space, flux, light.beside);
-  std::vector<std::size_t> first(flux.size());  // of the elements' directions
+  std::vector<std::size_t> first(flux.size());  // index of each element's first direction
   for (std::size_t i = 1; i < flux.size(); ++i) first[i] = first[i - 1] + counts.of(flux[i - 1]);
   entry.enter(flux, [&](std::size_t i) {
     return all_around(elements[i], space.eta(), first[i], counts.of(flux[i]));
