@@ -28,10 +28,9 @@ double golden_point(std::size_t i) {
 }
 
 constexpr std::size_t kDirections = 8;  // per light that is not a point
-// Directions of uniform light, different at neighbouring elements: of an average element, if there is no other light;
-// at least, as an element may be in the shadow of all other light; and at most.
-constexpr double kAllAround = 5, kFewestAround = 4;
-constexpr std::size_t kMostAround = 64;
+// Directions of uniform light, different at neighbouring elements: of an element with the body's mean light or
+// less; most times as many, where it is brighter.
+constexpr std::size_t kAllAround = 5, kMostTimes = 8;
 
 /// Incident directions with their fractions of the transmitted flux.
 struct Directions {
@@ -39,7 +38,7 @@ struct Directions {
     Vec3f outward;
     double share;
   };
-  std::array<One, kMostAround> some;
+  std::array<One, kMostTimes * kAllAround> some;
   std::size_t count = 0;
 };
 
@@ -378,11 +377,13 @@ class DirectionCounts {
     for (const Rgb& each : flux) sum += each;
     for (std::size_t s = 0; s < beside.size(); ++s) other += Rgb(beside[s]) * double(space.samples[s].area);
     for (std::size_t c = 0; c < 3; ++c)
-      if (sum[c] > 0) per_flux_[c] = kAllAround * double(flux.size()) / std::max(sum[c], other[c]);
+      if (sum[c] > 0) per_flux_[c] = double(flux.size()) / std::max(sum[c], other[c]);
   }
   std::size_t of(const Rgb& flux) const {
-    const double directions = std::ceil(max_component(flux * per_flux_));
-    return directions > 0 ? std::size_t(std::clamp(directions, kFewestAround, double(kMostAround))) : 0;
+    const double mean_times = max_component(flux * per_flux_);
+    std::size_t times = 1;  // powers of two: rounding of scaled lights seldom matters
+    while (double(times) * std::numbers::sqrt2 < mean_times && times < kMostTimes) times *= 2;
+    return times * kAllAround;
   }
 
  private:
@@ -390,7 +391,7 @@ class DirectionCounts {
 };
 
 /// Light entering at all elements. Each of a fixed number of parts of the elements has its own sums, added in order,
-/// so the bits do not depend on the number of threads.
+/// which makes the bits independent of the number of threads.
 class Entry {
  public:
   Entry(const DiffusionSpace& space, Monitor* monitor)
@@ -451,10 +452,8 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
   const std::vector<Rgb> flux =
       entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
   const DirectionCounts counts(space, flux, light.beside);
-  std::vector<std::size_t> first(flux.size());  // index of each element's first direction
-  for (std::size_t i = 1; i < flux.size(); ++i) first[i] = first[i - 1] + counts.of(flux[i - 1]);
   entry.enter(flux, [&](std::size_t i) {
-    return all_around(elements[i], space.eta(), first[i], counts.of(flux[i]));
+    return all_around(elements[i], space.eta(), i * kAllAround, counts.of(flux[i]));
   });
   return entry.take();
 }
