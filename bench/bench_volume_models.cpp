@@ -3,10 +3,11 @@
 //
 //   bench_volume_models SCENE TRUTH [KEY=VALUE ...]
 //   bench_volume_models FOLDER
+//   bench_volume_models FOLDER --default [MESH ...]
 //   bench_volume_models FOLDER --model NAME [KEY=VALUE ...] [PART OF SHAPE AND MEDIUM ...]
 //
 // The second prints one table of models by shape by medium (model_table.h), with scenes and truths in FOLDER; the third
-// one model of it channel by channel. In the first
+// a table of the default image; the fourth one model of the first table channel by channel. In the first
 // TRUTH keeps the walks' result (until the error of a cell is kUntilError; minutes) for later runs; it is made where it is
 // missing. KEY=VALUE as for `opaline render --set`, beside those that choose samples or light. Patches of about
 // .9 mm^2 of a 50 mm bunny: one for each of kPatches samples. rms and bias are shares of the mean exitance, in
@@ -99,11 +100,14 @@ void print_errors(const std::string& name, const std::vector<SurfaceSample>& sam
 
 int main(int argc, char** argv) {
   if (argc == 2) return print_model_table(argv[1]), 0;
+  if (argc > 2 && std::string_view(argv[2]) == "--default")
+    return print_default_table(argv[1], std::vector<std::string>(argv + 3, argv + argc)), 0;
   if (argc > 3 && std::string_view(argv[2]) == "--model")
     return print_model_channels(argv[1], argv[3], {argv + 4, argv + argc}), 0;
   if (argc < 3)
     return fmt::print(
                "usage: bench_volume_models SCENE TRUTH [KEY=VALUE ...], or bench_volume_models FOLDER\n"
+               "       [--default [MESH ...]], or bench_volume_models FOLDER\n"
                "       [--model NAME [KEY=VALUE ...] [PART OF SHAPE AND MEDIUM ...]]\n"),
            2;
   const std::vector<std::string> overrides(argv + 3, argv + argc);

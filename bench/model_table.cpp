@@ -8,12 +8,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <string_view>
+#include <optional>
 #include <vector>
 
+#include "core/units.h"
 #include "input/load_scene.h"
 #include "methods/volume/volume_state.h"
 #include "opaline/error.h"
+#include "plan/expected_error.h"
+#include "scene/names.h"
 #include "subsurface/method.h"
 #include "user_seconds.h"
 #include "volume/nearest_sample.h"
@@ -27,22 +30,34 @@ constexpr double kUntilError = .035;  // of a cell
 constexpr std::size_t kPointsOfCell = 40;
 
 struct NamedText {
-  std::string_view name, text;
+  std::string name, text;
 };
+
+NamedText mesh_file(const std::string& name, const std::string& path) {
+  return {name, fmt::format(R"("file": "{}", "fit_size": 50, "fill_holes": true)", path)};
+}
+
+NamedText lying_plate(double thickness) {
+  return {fmt::format("plate, 30 x 30 x {} mm", thickness),
+          fmt::format(R"("slab": {{"center": [0, 25, 0], "width": 30, "depth": 30, "thickness": {}}},
+      "normals": "faceted")",
+                      thickness)};
+}
+
 // The bunny's lights stand above and on both sides: of a plate that lies they light one side, of a fin both.
-constexpr std::array<NamedText, 5> kShapes{{
-    {"sphere, 25 mm across", R"("sphere": {"center": [0, 25, 0], "radius": 12.5})"},
-    {"plate, 30 x 30 x 1 mm",
-     R"("slab": {"center": [0, 25, 0], "width": 30, "depth": 30, "thickness": 1}, "normals": "faceted")"},
-    {"plate, 30 x 30 x 4 mm",
-     R"("slab": {"center": [0, 25, 0], "width": 30, "depth": 30, "thickness": 4}, "normals": "faceted")"},
-    {"fin, 20 x 20 x 2 mm",
-     R"("slab": {"width": 20, "depth": 20, "thickness": 2}, "normals": "faceted",
+std::vector<NamedText> table_shapes() {
+  return {{"sphere, 25 mm across", R"("sphere": {"center": [0, 25, 0], "radius": 12.5})"},
+          lying_plate(1),
+          lying_plate(4),
+          {"fin, 20 x 20 x 2 mm",
+           R"("slab": {"width": 20, "depth": 20, "thickness": 2}, "normals": "faceted",
       "transform": [{"rotate": {"axis": [1, 0, 0], "degrees": 90}}, {"translate": [0, 25, 0]}])"},
-    {"bunny, 50 mm",
-     R"("file": ")" OPALINE_SCENES_DIR R"(/assets/bunny.obj", "fit_size": 50, "fill_holes": true)"},
-}};
-constexpr std::array<NamedText, 3> kMedia{{{"marble", "marble"}, {"milk", "wholemilk"}, {"skin1", "skin1"}}};
+          mesh_file("bunny, 50 mm", OPALINE_SCENES_DIR "/assets/bunny.obj")};
+}
+
+std::vector<NamedText> table_media() {
+  return {{"marble", "marble"}, {"milk", "wholemilk"}, {"skin1", "skin1"}};
+}
 
 struct Model {
   std::string name;
@@ -74,17 +89,43 @@ std::string scene_text(const NamedText& shape, const NamedText& medium) {
                      medium.text, shape.text);
 }
 
+/// A shape in a medium, and its file without the ending.
+struct Pair {
+  NamedText shape, medium;
+  std::string stem;
+};
+
+std::vector<Pair> all_pairs(const std::string& folder, const std::vector<NamedText>& shapes) {
+  std::filesystem::create_directories(folder);
+  std::vector<Pair> pairs;
+  for (const NamedText& shape : shapes)
+    for (const NamedText& medium : table_media()) {
+      Pair& pair = pairs.emplace_back(Pair{shape, medium, folder + "/"});
+      for (const char letter : fmt::format("{} {}", shape.name, medium.name))
+        if (letter != ',') pair.stem += letter == ' ' ? '-' : letter;
+    }
+  return pairs;
+}
+
+Scene scene_of(const Pair& pair, const std::vector<std::string>& overrides) {
+  const std::string file = pair.stem + ".json";
+  std::ofstream(file) << scene_text(pair.shape, pair.medium);
+  return load_scene(file, overrides);
+}
+
 /// Random walks on the cells of kCells samples.
 struct WalkedCells {
   Truth truth;
   std::vector<SurfaceSample> samples;
 };
 
-WalkedCells walked_cells(Scene scene, const std::string& path) {
+WalkedCells walked_cells(const Pair& pair, bool reenters) {
+  const std::string path = pair.stem + (reenters ? "-reenter.truth" : ".truth");
   WalkedCells cells;
+  Scene scene = scene_of(pair, {});
   scene.settings.samples = kCells;
   scene.settings.until_error = kUntilError;
-  scene.settings.reenter = false;  // as with all models
+  scene.settings.reenter = reenters;
   const bool is_there = read_truth(path, cells.truth);
   scene.settings.method = is_there ? Method::hierarchical : Method::volume;
   Session session;
@@ -147,10 +188,6 @@ std::array<ModelError, 3> errors_of(const WalkedCells& cells, const Session& ses
   return errors;
 }
 
-const ModelError& worst_of(const std::array<ModelError, 3>& errors) {
-  return *std::ranges::max_element(errors, {}, &ModelError::rms);
-}
-
 /// By `auto`.
 ChosenProfile chosen_profile(const Scene& scene) {
   Session session;
@@ -175,7 +212,14 @@ std::array<ModelError, 3> measured_errors(const Session& session, const WalkedCe
   return errors_of(cells, session, points.samples, exitance_at(session, points.samples));
 }
 
-/// User CPU from the scene to its picture, s: the smaller of two.
+/// rms / bias / p99 of the worst channel, in %.
+std::string worst_error(const Session& session, const WalkedCells& cells) {
+  const std::array<ModelError, 3> errors = measured_errors(session, cells);
+  const ModelError& worst = *std::ranges::max_element(errors, {}, &ModelError::rms);
+  return fmt::format("{:.1f} / {:+.1f} / {:.0f}", 100 * worst.rms, 100 * worst.bias, 100 * worst.p99);
+}
+
+/// User CPU from the scene to its image, s: the median of three.
 double picture_seconds(const Scene& scene) {
   const auto once = [&] {
     return user_seconds([&] {
@@ -185,30 +229,7 @@ double picture_seconds(const Scene& scene) {
       session.render();
     });
   };
-  return std::min(once(), once());
-}
-
-/// A shape in a medium, and its file without the ending.
-struct Pair {
-  const NamedText *shape, *medium;
-  std::string stem;
-};
-
-std::vector<Pair> all_pairs(const std::string& folder) {
-  std::vector<Pair> pairs;
-  for (const NamedText& shape : kShapes)
-    for (const NamedText& medium : kMedia) {
-      Pair& pair = pairs.emplace_back(Pair{&shape, &medium, folder + "/"});
-      for (const char letter : fmt::format("{} {}", shape.name, medium.name))
-        if (letter != ',') pair.stem += letter == ' ' ? '-' : letter;
-    }
-  return pairs;
-}
-
-Scene scene_of(const Pair& pair, const std::vector<std::string>& overrides) {
-  const std::string file = pair.stem + ".json";
-  std::ofstream(file) << scene_text(*pair.shape, *pair.medium);
-  return load_scene(file, overrides);
+  return median({once(), once(), once()});
 }
 
 }  // namespace
@@ -226,7 +247,6 @@ std::vector<RgbF> exitance_at(const Session& session, std::span<const SurfaceSam
 
 void print_model_table(const std::string& folder) {
   const std::vector<Model> models = all_models();
-  std::filesystem::create_directories(folder);
   fmt::print(
       "rms / bias / p99 of the worst channel in % of the mean exitance, over {} cells; bold: chosen by "
       "`auto`\n\n| shape | medium |",
@@ -235,10 +255,10 @@ void print_model_table(const std::string& folder) {
   fmt::print("\n|---|---|");
   for (std::size_t m = 0; m < models.size(); ++m) fmt::print("---|");
   std::vector<std::vector<double>> costs(models.size());
-  for (const Pair& pair : all_pairs(folder)) {
+  for (const Pair& pair : all_pairs(folder, table_shapes())) {
     const Scene scene = scene_of(pair, {});
-    const WalkedCells cells = walked_cells(scene, pair.stem + ".truth");
-    fmt::print("\n| {} | {} |", pair.shape->name, pair.medium->name);
+    const WalkedCells cells = walked_cells(pair, /*reenters=*/false);
+    fmt::print("\n| {} | {} |", pair.shape.name, pair.medium.name);
     const ChosenProfile chosen = chosen_profile(scene);
     const double lambert = picture_seconds(with_model(scene, {"", Method::lambert}, chosen));
     for (std::size_t m = 0; m < models.size(); ++m) {
@@ -246,11 +266,10 @@ void print_model_table(const std::string& folder) {
       Session session;
       session.edit(modelled);
       session.prepare();
-      const ModelError error = worst_of(measured_errors(session, cells));
+      const std::string error = worst_error(session, cells);
       const bool is_chosen = models[m].method == Method::hierarchical && models[m].profile == chosen.kind;
       const char* mark = is_chosen ? "**" : "";
-      fmt::print(" {}{:.1f} / {:+.1f} / {:.0f}{} |", mark, 100 * error.rms, 100 * error.bias, 100 * error.p99,
-                 mark);
+      fmt::print(" {}{}{} |", mark, error, mark);
       std::fflush(stdout);
       costs[m].push_back(picture_seconds(modelled) / lambert);
     }
@@ -258,6 +277,34 @@ void print_model_table(const std::string& folder) {
   fmt::print("\n| user CPU over lambert, median | |");
   for (const std::vector<double>& cost : costs) fmt::print(" {:.1f} |", median(cost));
   fmt::print("\n");
+}
+
+void print_default_table(const std::string& folder, std::span<const std::string> meshes) {
+  std::vector<NamedText> shapes = table_shapes();
+  shapes.insert(shapes.begin() + 1, lying_plate(.5));
+  for (const std::filesystem::path path : meshes)
+    shapes.push_back(mesh_file(path.stem(), std::filesystem::absolute(path)));
+  fmt::print(
+      "rms / bias / p99 of the worst channel in % of the mean exitance, over {} cells, with re-entry\n\n"
+      "| shape | medium | error | expected | method | user CPU over lambert |\n"
+      "|---|---|---|---|---|---|\n",
+      kCells);
+  for (const Pair& pair : all_pairs(folder, shapes)) {
+    const WalkedCells cells = walked_cells(pair, /*reenters=*/true);
+    Scene scene = scene_of(pair, {});
+    scene.settings.method = Method::lambert;
+    const double lambert = picture_seconds(scene);
+    scene.settings.method = Method::automatic;
+    Session session;
+    session.edit(scene);
+    session.prepare();
+    const BodyPlan& body = session.plan().groups.at(0);
+    const std::optional<double> expected = expected_error(body.model, body.method);
+    fmt::print("| {} | {} | {} | {} | {} | {:.1f} |\n", pair.shape.name, pair.medium.name,
+               worst_error(session, cells), expected ? short_percent(*expected) : "unknown",
+               name_of(body.method), picture_seconds(scene) / lambert);
+    std::fflush(stdout);
+  }
 }
 
 void print_model_channels(const std::string& folder, const std::string& name,
@@ -269,13 +316,12 @@ void print_model_channels(const std::string& folder, const std::string& name,
   const auto model = std::ranges::find(models, name, &Model::name);
   if (model == models.end())
     throw bad_file(folder, "no model of the table", "volume_diffusion or a profile", name);
-  std::filesystem::create_directories(folder);
   fmt::print("rms / bias / p99 in %: R, G, B; user CPU of the exitance, s\n");
-  for (const Pair& pair : all_pairs(folder)) {
-    const std::string title = fmt::format("{} {}", pair.shape->name, pair.medium->name);
+  for (const Pair& pair : all_pairs(folder, table_shapes())) {
+    const std::string title = fmt::format("{} {}", pair.shape.name, pair.medium.name);
     const auto is_in_title = [&](const std::string& part) { return title.find(part) != std::string::npos; };
     if (!parts.empty() && std::ranges::none_of(parts, is_in_title)) continue;
-    const WalkedCells cells = walked_cells(scene_of(pair, {}), pair.stem + ".truth");
+    const WalkedCells cells = walked_cells(pair, /*reenters=*/false);
     const Scene scene = scene_of(pair, overrides);
     const Scene modelled = with_model(scene, *model, chosen_profile(scene));
     Session session;
