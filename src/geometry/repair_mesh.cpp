@@ -42,15 +42,15 @@ struct Rim {
 class HoleFiller {
  public:
   HoleFiller(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-             const std::vector<Edge>& open_edges)
-      : positions_(positions), open_edges_(open_edges) {
+             const std::vector<Edge>& open_edges, bool has_inside)
+      : positions_(positions), open_edges_(open_edges), has_inside_(has_inside) {
     build(triangles);
   }
 
   HoleFilling run(FillHoles which) {
     std::vector<Halfedge> borders;
     pmp::extract_boundary_cycles(mesh_, std::back_inserter(borders));
-    for (const Halfedge border : borders) fill(border, which);
+    for (const Halfedge border : borders) fill(border);
     if (which == FillHoles::if_small && !result_.unfilled.empty()) return {};
     return std::move(result_);
   }
@@ -107,10 +107,9 @@ class HoleFiller {
     return open;
   }
 
-  /// if_small also fills borders along edges of three triangles or more, as the result must be closed.
-  void fill(Halfedge border, FillHoles which) {
+  void fill(Halfedge border) {
     std::size_t edges = 0;
-    if (!is_hole(border, edges) && which == FillHoles::all) {
+    if (!is_hole(border, edges) && !has_inside_) {
       result_.unfilled.push_back(edges);
       return;
     }
@@ -159,6 +158,7 @@ class HoleFiller {
 
   const std::vector<Vec3d>& positions_;
   const std::vector<Edge>& open_edges_;
+  bool has_inside_;
   std::vector<std::uint32_t> original_;  // source vertex of each vertex of mesh_
   HalfedgeMesh mesh_;
   HoleFilling result_;
@@ -191,8 +191,8 @@ bool has_small_holes(const std::vector<Vec3d>& positions, const std::vector<Tria
 }
 
 HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                       const std::vector<Edge>& open_edges, FillHoles which) {
-  return HoleFiller(positions, triangles, open_edges).run(which);
+                       const std::vector<Edge>& open_edges, FillHoles which, bool has_inside) {
+  return HoleFiller(positions, triangles, open_edges, has_inside).run(which);
 }
 
 }  // namespace opaline

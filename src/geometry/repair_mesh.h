@@ -30,11 +30,12 @@ bool has_small_holes(const std::vector<Vec3d>& positions, const std::vector<Tria
 
 /// Triangulates the holes of a mesh without new vertices.
 /// in    triangles: consistently wound, no duplicates, no vertex twice in a triangle; open_edges: the edges
-///       with one triangle, ascending; which: all or if_small
+///       with one triangle, ascending; which: all or if_small; has_inside: fills borders along edges of three triangles or
+///       more, too, as the mesh must be closed
 /// out   if_small: nothing, unless all holes can be filled
 /// from  Liepa 2003, by CGAL's triangulate_hole; holes of more than 500 edges only by the faster search over
 ///       a Delaunay triangulation
 HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                       const std::vector<Edge>& open_edges, FillHoles which);
+                       const std::vector<Edge>& open_edges, FillHoles which, bool has_inside);
 
 }  // namespace opaline
