@@ -112,6 +112,8 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
   }
   if (bounces_of(scene) > 0)
     plan.stages.push_back(method.bounces_stage());
+  else if (scene.settings.method == Method::volume && shapes_exchange_light(scene))
+    plan.stages.push_back("no light between shapes; other methods leave it out with settings.bounces=0");
   else if (std::ranges::any_of(plan.groups, [&](const BodyPlan& body) { return gathers_light(scene, body); }))
     plan.stages.push_back("re-entry: light leaving the body, gathered at its samples");
   if (used.empty()) used.push_back(scene.settings.method);

@@ -62,46 +62,56 @@ std::vector<float> sampled_brightness(const Image& image) {
   return values.empty() && step > 1 ? brightness(image, 1) : values;
 }
 
-/// A visible point of the back of a translucent surface, mm, if a considerable part of the covered pixels shows
-/// backs; opaque surfaces have none.
-std::optional<Vec3d> visible_back(const Image& image, const Vec3d& camera) {
-  constexpr double kConsiderable = 0.05;
+/// A visible point, by the camera's rays.
+struct Seen {
+  Vec3d place;     ///< mm
+  bool is_behind;  ///< by the shading normal
+};
+
+std::vector<Seen> seen_points(const Image& image, const Vec3d& camera) {
   const std::size_t stride = image.channels.size(), coverage = channel(image, "A");
   const std::array<std::size_t, 3> normal{channel(image, "N.X"), channel(image, "N.Y"),
                                           channel(image, "N.Z")},
       place{channel(image, "P.X"), channel(image, "P.Y"), channel(image, "P.Z")};
-  if (normal[2] == stride || place[2] == stride) return {};
-  std::size_t seen = 0;
-  std::vector<std::size_t> behind;  // pixels
+  std::vector<Seen> seen;
+  if (normal[2] == stride || place[2] == stride) return seen;
   for (std::size_t at = 0; at < image.pixels.size(); at += stride) {
     const float* const pixel = image.pixels.data() + at;
     if (pixel[coverage] < 1) continue;
-    double cosine = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      cosine += double(pixel[normal[i]]) * (double(pixel[place[i]]) - camera[i]);
-    ++seen;
-    if (cosine > 0) behind.push_back(at);
+    const auto vector = [&](const std::array<std::size_t, 3>& of) {
+      return Vec3d(double(pixel[of[0]]), double(pixel[of[1]]), double(pixel[of[2]]));
+    };
+    seen.push_back({vector(place), dot(vector(normal), vector(place) - camera) > 0});
   }
-  if (double(behind.size()) <= kConsiderable * double(seen)) return {};
-  const float* const middle = image.pixels.data() + behind[behind.size() / 2];
-  return Vec3d(double(middle[place[0]]), double(middle[place[1]]), double(middle[place[2]]));
+  return seen;
 }
 
-/// The cause of visible backs at a point: an open mesh around it, or a camera inside a body.
-std::string back_is_visible(const Scene& scene, const World& world, const Vec3d& point) {
-  constexpr double kRounding = 1e-4;  // diagonals
+/// True if most of the points show a back. Smooth normals at sharp edges turn a few.
+bool are_mostly_backs(std::span<const Seen> seen) {
+  return 2 * std::size_t(std::ranges::count_if(seen, &Seen::is_behind)) > seen.size();
+}
+
+/// Open translucent mesh seen from behind, or camera inside a body; empty: neither. Opaque surfaces have no back.
+std::string backs_are_seen(const Scene& scene, const World& world, std::span<const Seen> seen) {
+  constexpr double kRounding = 1e-4;      // diagonals
+  constexpr double kConsiderable = 0.02;  // fraction of the points
   for (std::size_t m = 0; m < world.meshes.size(); ++m) {
-    const Bounds& box = world.boxes[m];
-    const Vec3d margin(kRounding * length(box.high - box.low));
-    if (scene.shapes[m].medium && world.reports[m].open_edges > 0 &&
-        meet({box.low - margin, box.high + margin}, {point, point}))
+    if (!scene.shapes[m].medium || world.reports[m].open_edges == 0) continue;
+    const Vec3d margin(kRounding * length(world.boxes[m].high - world.boxes[m].low));
+    const Bounds box{world.boxes[m].low - margin, world.boxes[m].high + margin};
+    std::vector<Seen> own;
+    for (const Seen& point : seen)
+      if (meet(box, {point.place, point.place})) own.push_back(point);
+    if (double(own.size()) > kConsiderable * double(seen.size()) && are_mostly_backs(own))
       return fmt::format(
           "the camera sees the back side of the open translucent mesh '{}', which is black: its winding "
           "faces away; vertex normals towards the camera turn it, or close the mesh",
           scene.shapes[m].name);
   }
-  return "the camera sees the back side of a translucent surface, which is black; it is inside the body; "
-         "move the camera";
+  const bool is_translucent =
+      std::ranges::any_of(scene.shapes, [](const Shape& shape) { return shape.medium.has_value(); });
+  if (!is_translucent || !are_mostly_backs(seen)) return {};
+  return "the camera sees the back side of a translucent surface: it is inside the body; move the camera";
 }
 
 /// Pixel of a direction, in the full image. towards: in front of the camera
@@ -320,8 +330,9 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   if (world.meshes.empty() || scene.lights.empty()) return {};  // the plan warns of this
   std::vector<float> values = sampled_brightness(image);
   if (values.empty()) return {nothing_in_view(scene, world)};
-  if (const std::optional<Vec3d> back = visible_back(image, scene.camera.position))
-    return {back_is_visible(scene, world, *back)};
+  if (std::string backs = backs_are_seen(scene, world, seen_points(image, scene.camera.position));
+      !backs.empty())
+    return {std::move(backs)};
   const double gain = std::exp2(scene.film.exposure);
   const auto quantile = [&](double share) {
     const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));

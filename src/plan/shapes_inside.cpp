@@ -136,10 +136,16 @@ class ShapesInside {
     if (!reaches_inside(body, box, other)) return;
     if (body_of_[other]) named_.insert(std::minmax(i, *body_of_[other]));
     if (++count_ > kMostNamed) return;
-    warnings_.push_back(fmt::format(
-        "{}: the shape '{}' {}, but the method {} ignores it there; --method volume does not", body.name,
-        scene_.shapes[other].name, contains(box, boxes_[other]) ? "lies inside" : "lies partly inside",
-        name_of(body.method)));
+    warnings_.push_back(fmt::format("{}: the shape '{}' {}, but the method {} ignores it there; {}",
+                                    body.name, scene_.shapes[other].name,
+                                    contains(box, boxes_[other]) ? "lies inside" : "lies partly inside",
+                                    name_of(body.method), way_out(body, other)));
+  }
+
+  const char* way_out(const BodyPlan& body, std::size_t other) const {
+    if (!body_of_[other]) return "--method volume does not";
+    return scene_.shapes[other].medium == body.medium ? "put both into one group, or move them apart"
+                                                      : "no method mixes media; move them apart";
   }
 
   /// True if the points of the shape inside the body span a considerable part of it. The surface of another body is

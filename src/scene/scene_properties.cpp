@@ -16,14 +16,18 @@ bool are_one_body(const Shape& a, const Shape& b) {
   return a.medium && b.medium && !a.group.empty() && a.group == b.group;
 }
 
-int bounces_of(const Scene& scene) {
-  if (scene.lights.empty()) return 0;
-  if (scene.settings.bounces) return *scene.settings.bounces;
-  if (scene.settings.method == Method::volume) return 0;
+bool shapes_exchange_light(const Scene& scene) {
+  if (scene.lights.empty()) return false;
   const auto first = std::ranges::find_if(scene.shapes, sends_light);
   return std::any_of(first, scene.shapes.end(), [&](const Shape& other) {
     return &other != &*first && sends_light(other) && !are_one_body(*first, other);
   });
+}
+
+int bounces_of(const Scene& scene) {
+  if (scene.lights.empty()) return 0;
+  if (scene.settings.bounces) return *scene.settings.bounces;
+  return scene.settings.method != Method::volume && shapes_exchange_light(scene) ? 1 : 0;
 }
 
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) {

@@ -35,6 +35,8 @@ inline NormalizedDiffusionFit profile_fit(const Medium& medium) {
   return medium.profile ? medium.fit : medium.chosen.fit;
 }
 
+/// True if one reflecting shape can illuminate another.
+bool shapes_exchange_light(const Scene& scene);
 /// Number of bounces between surfaces: Settings::bounces, or by default 1 if one reflecting shape can
 /// illuminate another and the method supports it. A body illuminates itself only on request.
 int bounces_of(const Scene& scene);

@@ -114,21 +114,51 @@ void DiffusionBody::find_media(const BodyMedia& media) {
   });
 }
 
+// Cells straight below an element; at edges, where its column has none near the surface, the nearest one beside it.
 void DiffusionBody::attach() {
   attached_.resize(boundary_.elements.size());
   parallel_chunks(attached_.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
       const BoundaryElement& element = boundary_.elements[i];
       const Vec3f position(space().in_lattice(element.position)), normal = element.normal;
-      for (const float below : {.05f, .35f, .7f, 1.05f, 1.5f}) {
-        const std::uint32_t cell = grid_.at(position - normal * below);
-        if (cell == DiffusionGrid::kNone) continue;
+      const auto take = [&](std::uint32_t cell) {
         const float depth = dot(position - grid_.cells()[cell].centre, normal);
         attached_[i] = {cell, std::max(0.0, double(depth)) * lattice_.cell};
-        break;
-      }
+      };
+      const auto take_below = [&](std::initializer_list<float> depths) {
+        for (const float below : depths) {
+          const std::uint32_t cell = grid_.at(position - normal * below);
+          if (cell == DiffusionGrid::kNone) continue;
+          take(cell);
+          return true;
+        }
+        return false;
+      };
+      if (take_below({.05f, .35f, .7f})) continue;
+      if (const std::uint32_t beside = nearest_below(position, normal); beside != DiffusionGrid::kNone)
+        take(beside);
+      else
+        take_below({1.05f, 1.5f});
     }
   });
+}
+
+// The cell with the nearest centre below an element, among those around it; position: lattice units.
+std::uint32_t DiffusionBody::nearest_below(const Vec3f& position, const Vec3f& normal) const {
+  std::uint32_t found = DiffusionGrid::kNone;
+  float nearest = 0;
+  const Vec3f about = position - normal * .35f;
+  for (const float x : {-1.f, 0.f, 1.f})
+    for (const float y : {-1.f, 0.f, 1.f})
+      for (const float z : {-1.f, 0.f, 1.f}) {
+        const std::uint32_t cell = grid_.at(about + Vec3f(x, y, z));
+        if (cell == DiffusionGrid::kNone) continue;
+        const Vec3f apart = position - grid_.cells()[cell].centre;
+        if (!(dot(apart, normal) > 0)) continue;
+        if (found != DiffusionGrid::kNone && dot(apart, apart) >= nearest) continue;
+        found = cell, nearest = dot(apart, apart);
+      }
+  return found;
 }
 
 DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::vector<Channels> start,

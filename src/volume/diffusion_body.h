@@ -50,6 +50,7 @@ class DiffusionBody {
   }
   void find_media(const BodyMedia& media);
   void attach();
+  std::uint32_t nearest_below(const Vec3f& position, const Vec3f& normal) const;
   std::vector<Channels> losses() const;
   std::vector<RgbF> read(std::span<const Channels> fluence, std::span<const RgbF> leaving) const;
 

@@ -113,6 +113,21 @@ TEST(PictureWarnings, SheetSeenFromBehind) {
   EXPECT_EQ(backs(), "");
 }
 
+// Claim: smooth normals that look away at sharp edges are no backs, neither of a translucent nor of an opaque cube. Fails if: a
+// few pixels count.
+TEST(PictureWarnings, SmoothEdgesAreNoBacks) {
+  Scene scene = lit_ball();
+  scene.shapes[0].source = BoxShape{{-8, -8, -8}, {8, 8, 8}};
+  scene.shapes[0].normals = NormalMode::smooth;
+  scene.camera.position = {20, 12, 30};
+  for (const bool translucent : {true, false}) {
+    if (!translucent) scene.shapes[0].medium.reset();
+    const Prepared cube(scene);
+    for (const std::string& text : picture_warnings(cube.scene, cube.world, cube.picture()))
+      EXPECT_EQ(text.find("back side"), std::string::npos) << text;
+  }
+}
+
 // Claim: each light that reaches no surface is named, whatever the other lights do. Source: picture_warnings.h. By hand: a
 // quad in the ball's bounding box that faces its corner has the corner before it, not the ball; the spot 60 mm from a ball
 // of 10 mm that points 15 degrees beside its middle, which asin(1 / 6) = 9.6 degrees enclose, misses it by a cone of 5

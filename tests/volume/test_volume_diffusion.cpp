@@ -121,6 +121,29 @@ TEST(VolumeDiffusion, DarkBallAsWalked) {
   EXPECT_NEAR(mean_left(scene) / walked, 1, .03);
 }
 
+// Claim: no part of the surface is left without cells, also at corners that reach a little into cells whose centres are
+// outside. Source: in even light, the corners of a box are at least .6 times as bright as the mean. Fails if: elements take
+// cells straight below alone (0 at a corner).
+TEST(VolumeDiffusion, CornersAreNotDark) {
+  const Scene scene = parse_scene(R"({
+    "media": {"wax": {"subsurface_color": [0.9, 0.8, 0.6], "subsurface_radius": [2, 1.5, 1]}},
+    "shapes": [{"name": "box", "box": {"low": [-15, -10, -12], "high": [15, 0, 12]}, "medium": "wax"}],
+    "surroundings": 1})",
+                                  "box.json", {});
+  Session session;
+  session.edit(scene);
+  session.prepare();
+  const Body& body = session.bodies()[0];
+  const std::vector<RgbF> exitance = cell_exitance(body);
+  double sum = 0, area = 0, least = 1e9;
+  for (std::size_t i = 0; i < exitance.size(); ++i) {
+    const auto own = double(body.surface.samples[i].area);
+    sum += own * double(exitance[i].x), area += own;
+    least = std::min(least, double(exitance[i].x));
+  }
+  EXPECT_GT(least * area / sum, .6);
+}
+
 // Claim: light going to and fro between two plates of a body equals that of random walks. Source: the walks. Tolerance: 5 %
 // for the plate in shadow, which has no other light (measured 1.4), and 2 % for the lit one (.8). Fails if: re-entry is off by
 // default (no light), light bounces once (-23 and -7 %), or a specular reflection is inferred from the exitance of faces in
