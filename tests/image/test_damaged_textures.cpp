@@ -82,6 +82,38 @@ TEST(DamagedTextures, RefusesTexelsOutOfRange) {
   }
 }
 
+/// An uncompressed grey TIFF of 16 x 16 bytes whose directory precedes its pixels.
+std::string tiff_of_bytes() {
+  constexpr int kSide = 16, kEntries = 8, kPixels = 8 + 2 + 12 * kEntries + 4;
+  std::string bytes("II*\0\x08\0\0\0", 8);
+  const auto add = [&](int number, int size) {
+    for (int i = 0; i < size; ++i) bytes += char(number >> 8 * i & 255);
+  };
+  add(kEntries, 2);
+  // Width, height, bits, no compression, black is zero, place of the only strip, its rows, its bytes.
+  for (const auto& [tag, value] :
+       {std::pair(256, kSide), std::pair(257, kSide), std::pair(258, 8), std::pair(259, 1), std::pair(262, 1),
+        std::pair(273, kPixels), std::pair(278, kSide), std::pair(279, kSide * kSide)})
+    for (const auto& [number, size] :
+         {std::pair(tag, 2), std::pair(4, 2), std::pair(1, 4), std::pair(value, 4)})
+      add(number, size);
+  add(0, 4);
+  return bytes + std::string(kSide * kSide, char(200));
+}
+
+// Claim: an uncompressed TIFF that lacks any of its bytes is refused. Source: TIFF 6.0. Fails if OpenImageIO alone judges, which
+// reads the missing pixels as black.
+TEST(DamagedTextures, RefusesShortTiffs) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("a.tif"), whole = tiff_of_bytes();
+  put_bytes(path, whole);
+  EXPECT_EQ(message_of(path), "");
+  for (const std::size_t length : {whole.size() - 1, whole.size() - 128, std::size_t(111), std::size_t(50)}) {
+    put_bytes(path, whole.substr(0, length));
+    EXPECT_NE(message_of(path).find("the image is truncated"), std::string::npos) << length;
+  }
+}
+
 // Claim: what cannot be read is an error that names the file, when it is opened. Fails if a damaged file waits until it is
 // looked up, or is shown as grey.
 TEST(DamagedTextures, RefusesBrokenFiles) {
