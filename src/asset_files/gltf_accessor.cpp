@@ -185,6 +185,16 @@ std::vector<Transform> read_matrices(const GltfModel& gltf, std::uint32_t index)
   });
 }
 
+void check_positions_type(const GltfModel& gltf, std::uint32_t index) {
+  constexpr std::string_view kQuantization = "KHR_mesh_quantization";
+  const std::size_t type = gltf.accessors[index].component;
+  for (const auto* names : {&gltf.extensions_used, &gltf.extensions_required})
+    if (std::ranges::find(*names, kQuantization) != names->end()) return;
+  if (type != kFloat)
+    fail_at(gltf.path, record_name("accessors", index), "has positions that are not floats",
+            "a componentType of 5126, or " + std::string(kQuantization), std::to_string(type));
+}
+
 void check_unsigned(const GltfModel& gltf, std::uint32_t index) {
   const std::size_t type = gltf.accessors[index].component;
   if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt)

@@ -28,6 +28,9 @@ std::vector<Transform> read_matrices(const GltfModel& gltf, std::uint32_t index)
 /// The same of unsigned scalars.
 std::vector<std::uint32_t> read_indices(const GltfModel& gltf, std::uint32_t index);
 
+/// error Error{bad_input}: the accessor has integers, and the file does not declare KHR_mesh_quantization
+void check_positions_type(const GltfModel& gltf, std::uint32_t index);
+
 /// error Error{bad_input}: the accessor's numbers have a sign or fractions
 void check_unsigned(const GltfModel& gltf, std::uint32_t index);
 

@@ -11,7 +11,7 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kVersionAt = 4, kFirstChunk = 12, kChunkHeader = 8, kAlignment = 4;
+constexpr std::size_t kVersionAt = 4, kLengthAt = 8, kFirstChunk = 12, kChunkHeader = 8, kAlignment = 4;
 constexpr std::size_t kShown = 40;  // first characters of another file
 constexpr std::string_view kJson = "JSON", kBinary{"BIN\0", 4};
 
@@ -79,6 +79,9 @@ GltfChunks gltf_chunks(const std::string& path, std::string_view file) {
   if (file.size() < kFirstChunk + kChunkHeader) throw bad_file(path, "its header is cut off");
   if (const std::size_t version = number_at(file, kVersionAt); version != 2)
     throw bad_file(path, "has an unsupported version", "binary glTF 2", std::to_string(version));
+  if (const std::size_t length = number_at(file, kLengthAt); length > file.size())
+    throw bad_file(path, "the file is truncated", std::to_string(length) + " bytes by its header",
+                   std::to_string(file.size()));
   if (!is_chunk(file, kFirstChunk, kJson)) throw bad_file(path, "does not begin with JSON", "a GLB file");
   GltfChunks chunks;
   chunks.json = chunk_at(path, file, kFirstChunk, "JSON");

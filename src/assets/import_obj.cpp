@@ -41,11 +41,36 @@ std::string in_a_row(const std::vector<std::string>& words) {
   return text;
 }
 
-/// The text of a file.
+/// A name without a comment after it; the name itself if nothing else remains.
+std::string_view without_comment(std::string_view name) {
+  for (std::size_t at = name.find('#'); at != name.npos; at = name.find('#', at + 1))
+    if (at > 0 && kLineBlanks.find(name[at - 1]) != kLineBlanks.npos) return trimmed(name.substr(0, at));
+  return name;
+}
+
+/// A backslash at the end of a line continues it. Empty lines follow it, so that others keep their number.
+void join_continued_lines(std::string& text) {
+  std::size_t joined = 0, to = 0;
+  for (std::size_t from = 0; from < text.size(); ++from) {
+    const std::size_t end = text.compare(from + 1, 1, "\r") == 0 ? from + 2 : from + 1;
+    if (text[from] == '\\' && end < text.size() && text[end] == '\n') {
+      text[to++] = ' ';
+      from = end;
+      ++joined;
+      continue;
+    }
+    text[to++] = text[from];
+    for (; text[from] == '\n' && joined > 0; --joined) text[to++] = '\n';
+  }
+  text.resize(to);
+}
+
+/// The text of a file, with continued lines joined.
 std::string read_asset_text(const std::string& path) {
   std::string text = read_asset_bytes(path);
   drop_byte_order_mark(path, text);
   end_lines_with_line_feeds(text);
+  join_continued_lines(text);
   return text;
 }
 
@@ -141,7 +166,7 @@ class ObjImporter {
     const auto& [names, line] = library;
     if (const std::string whole = find(names, path_, line, "mtllib"); !whole.empty())
       return read_library(whole);
-    std::string_view rest = names;
+    std::string_view rest = without_comment(names);
     for (std::string_view name = next_word(rest); !name.empty(); name = next_word(rest)) {
       const std::string file = find(std::string(name), path_, line, "mtllib");
       if (file.empty())
@@ -158,7 +183,10 @@ class ObjImporter {
   /// File named on a line; empty: missing.
   std::string find(const std::string& name, const std::string& named_in, std::size_t line,
                    const std::string& keyword) {
-    const NamedFile file = find_named_file(name, path_, std::filesystem::path(named_in).parent_path());
+    const std::filesystem::path folder = std::filesystem::path(named_in).parent_path();
+    NamedFile file = find_named_file(name, path_, folder);
+    if (const std::string alone(without_comment(name)); file.path.empty() && alone != name)
+      file = find_named_file(alone, path_, folder);
     if (!file.warning.empty()) warn(named_in, line, keyword + ' ' + file.warning);
     return file.path.string();
   }
@@ -269,6 +297,10 @@ class ObjImporter {
     }
     for (const std::string& option : texture.not_carried)
       warn(material.file, statement.line, label + ": the option " + in_quotes(option) + " is ignored");
+    if (texture.base != 0)
+      warn(material.file, statement.line,
+           label + fmt::format(": the base {} of -mm is ignored; the gain {} applies", texture.base,
+                               texture.gain));
     Json json{{"texture", scene_name_of(file, path_, mesh_path_)}};
     const auto& [scale_u, scale_v] = texture.scale;
     const std::array<double, 2> offset{texture.offset[0], 1 - scale_v - texture.offset[1]};

@@ -102,13 +102,18 @@ class StatementReader {
     if (name == "-s") return set_pair(numbers, 1, texture_.scale);
     if (name == "-o") return set_pair(numbers, 0, texture_.offset);
     if (name == "-bm") return set(numbers[0], texture_.bump);
-    if (name == "-mm") return numbers.size() == 2 && set(numbers[1], texture_.gain) && numbers[0] == 0;
+    if (name == "-mm") return numbers.size() == 2 && set_range(numbers[0], numbers[1]);
     return true;  // resolution, sharpness and the like
   }
 
   static bool set_pair(const std::vector<double>& numbers, double otherwise, std::array<double, 2>& pair) {
     pair = {numbers[0], numbers.size() > 1 ? numbers[1] : otherwise};
     return true;
+  }
+
+  bool set_range(double base, double gain) {
+    if (set(gain, texture_.gain)) texture_.base = base;
+    return gain >= 0;
   }
 
   static bool set(double number, double& value) {

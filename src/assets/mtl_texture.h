@@ -13,7 +13,8 @@ struct MtlTexture {
   std::string name;                      ///< as in the file
   std::array<double, 2> scale{1, 1};     ///< -s: of UVs, v upwards
   std::array<double, 2> offset{0, 0};    ///< -o: added after scaling
-  double gain = 1, bump = 1;             ///< second number of -mm, and -bm
+  double base = 0, gain = 1;             ///< numbers of -mm; the base is not supported
+  double bump = 1;                       ///< -bm
   std::vector<std::string> not_carried;  ///< unknown options, and unsupported ones that change the image
 };
 

@@ -20,6 +20,8 @@ class CachedPicture {
   /// Constant texel, if all are equal.
   virtual std::optional<Texel> constant() const = 0;
   virtual Texel mean() const = 0;
+  /// As TextureFile::above_one.
+  virtual TexelsAboveOne above_one(const Vec3d& scale) const = 0;
   /// Presence of red, green, blue and alpha in the image.
   virtual std::array<bool, 4> channels() const = 0;
   virtual TextureMemory memory() const = 0;

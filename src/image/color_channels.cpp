@@ -35,14 +35,16 @@ bool has_color(const ChannelPlaces& places) {
 ChannelPlaces places_in(std::string_view layer, const std::vector<std::string>& channels) {
   ChannelPlaces places{-1, -1, -1, -1};
   int grey = -1;
+  bool is_vector = false;
   for (int c = 0; c < int(channels.size()); ++c) {
     if (layer_of(channels[std::size_t(c)]) != layer) continue;
     const std::string component = component_of(channels[std::size_t(c)]);
     for (std::size_t k = 0; k < places.size(); ++k)
       if (is_color_word(component, k)) places[k] = c;
     if (component == "y") grey = c;
+    is_vector = is_vector || component == "x";
   }
-  if (grey >= 0 && !has_color(places)) places = {grey, grey, grey, places[3]};
+  if (grey >= 0 && !is_vector && !has_color(places)) places = {grey, grey, grey, places[3]};
   return places;
 }
 

@@ -26,7 +26,8 @@ std::vector<ColorChannels> color_channels(const std::vector<std::string>& channe
 using ChannelPlaces = std::array<int, 4>;
 
 /// Channels for textures and environments: R, G, B or Y, and A, in upper or lower case or in full ("red"),
-/// plain or of the only layer having them ("diffuse.R"); a single channel is grey for any name.
+/// plain or of the only layer having them ("diffuse.R"); a single channel is grey for any name, and
+/// Y beside X is no luminance.
 /// in    path: for messages
 /// error Error{bad_input} naming the file: no such channels, several layers, luminance and chroma (RY, BY)
 ChannelPlaces channel_places(const std::vector<std::string>& channels, const std::string& path);

@@ -250,7 +250,7 @@ void LinearInput::finish(void* texels, std::size_t pixels, OIIO::TypeDesc type) 
 
 bool LinearInput::check_range(const void* values, std::size_t count, OIIO::TypeDesc type) {
   if (all_within_range(values, count, type)) return true;
-  errorfmt("{}", kTexelOutOfRange);
+  errorfmt("a converted texel {}", kTexelOutOfRange);
   return false;
 }
 

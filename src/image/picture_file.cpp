@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "image/png_chunks.h"
+#include "image/tiff_strips.h"
 #include "opaline/error.h"
 
 namespace opaline {
@@ -113,6 +114,7 @@ void check_is_whole(const PictureSource& source) {
   const std::string_view format = format_of(bytes);
   if (format == "png") check_png_chunks(bytes, source.path);
   if (format == "jpeg") check_jpeg_end(bytes, source.path);
+  if (format == "tiff") check_tiff_strips(bytes, source.path);
 }
 
 }  // namespace opaline

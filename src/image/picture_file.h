@@ -27,7 +27,7 @@ struct OpenPicture {
 /// error Error{bad_input} naming the file: missing, not a regular file, another format, deep, too large
 OpenPicture open_picture(const PictureSource& source, std::span<const std::string_view> formats);
 
-/// Checks a PNG's chunks and a JPEG's end, ignored by their decoders.
+/// Checks a PNG's chunks, a JPEG's end and a TIFF's strips, ignored by their decoders.
 /// error Error{bad_input} naming the file: truncated, damaged
 void check_is_whole(const PictureSource& source);
 

@@ -12,7 +12,7 @@ namespace opaline {
 
 /// Largest absolute value of a texel: differences of larger ones could overflow.
 inline constexpr double kLargestTexel = 1e30;
-inline constexpr const char* kTexelOutOfRange = "has a texel that is not finite or above 1e30";
+inline constexpr const char* kTexelOutOfRange = "is not finite or above 1e30";
 
 /// Texels fill the file's display window, with 0 outside its data window. They have the channels Y, Y A, R G
 /// B or R G B A; a missing one of R, G and B is 0.

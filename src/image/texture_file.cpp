@@ -193,6 +193,15 @@ std::array<float, 2> TextureFile::slope(const TexturePlace& place, std::size_t c
   return picture == nullptr ? std::array<float, 2>{} : picture->slope(within, channel);
 }
 
+TexelsAboveOne TextureFile::above_one(const Vec3d& scale) const {
+  TexelsAboveOne all;
+  for (const auto& [tile, picture] : pictures_) {
+    const TexelsAboveOne own = picture->above_one(scale);
+    all = {all.count + own.count, all.texels + own.texels, std::max(all.largest, own.largest)};
+  }
+  return all;
+}
+
 Texel TextureFile::mean() const {
   Texel mean{};
   for (const auto& [tile, picture] : pictures_) {

@@ -29,6 +29,12 @@ struct TextureMemory {
 
 using Texel = std::array<double, 4>;  ///< red, green, blue, alpha; three equal for a grey image; no alpha: 1
 
+/// Texels with a colour above 1.
+struct TexelsAboveOne {
+  std::size_t count = 0, texels = 0;  ///< texels above 1, and all
+  double largest = 0;
+};
+
 /// Use of a texture's texels. Colours become linear Rec.709, by the file's primaries, without premultiplied
 /// alpha. Data are the file's numbers.
 enum class TextureContent { data, colors };
@@ -50,8 +56,9 @@ class TextureFile {
   ///       the asset; space: not automatic
   /// out   the same object while the file is unchanged and in use; the image is the display window, 0 outside
   ///       the data window
-  /// error Error{bad_input} naming the file: missing, not a regular file, damaged, not an image, no colours
-  ///       or several layers of them, primaries not spanning a colour space
+  /// error Error{bad_input} naming the file: missing, not a regular file, damaged, not an image, a texel
+  ///       above 1e30 or not finite, no colours or several layers of them, primaries not spanning a colour
+  ///       space
   static std::shared_ptr<const TextureFile> open(const std::string& path, ColorSpace space,
                                                  TextureContent content = TextureContent::data);
   /// Opens a file without a declared colour space, as colours or as data.
@@ -70,6 +77,9 @@ class TextureFile {
   std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const;
   /// Value of all texels, if it is constant.
   const std::optional<Texel>& constant() const { return constant_; }
+  /// Float texels exceeding 1 after multiplication by `scale`, except small excesses left by filters. Reads
+  /// the whole image, once per scale.
+  TexelsAboveOne above_one(const Vec3d& scale) const;
   /// Mean of all texels; reads the whole image the first time.
   Texel mean() const;
 

@@ -9,6 +9,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <mutex>
 
 #include "core/machine_memory.h"
 #include "image/cached_picture.h"
@@ -22,7 +24,8 @@
 namespace opaline {
 namespace {
 
-constexpr int kRows = 64;  // rows of an image, read at once
+constexpr int kRows = 64;            // rows of an image, read at once
+constexpr float kOfFilters = 1e-4f;  // excess of colours left by filters, times white
 
 /// A quarter of the machine, but at least 256 MB and at most 4 GB.
 std::size_t cache_limit() {
@@ -107,7 +110,8 @@ void for_each_texel(const PictureSource& source, const TexelColors& colors, cons
         Texel texel{value(i, 0, 0), value(i, 1, 0), value(i, 2, 0), value(i, 3, 1)};
         colors.apply(texel);
         for (const double v : texel)
-          if (!(std::abs(v) <= kLargestTexel)) throw bad_file(source.path, kTexelOutOfRange);
+          if (!(std::abs(v) <= kLargestTexel))
+            throw bad_file(source.path, std::string("a texel ") + kTexelOutOfRange);
         if (!visit(texel, std::size_t(1))) return;
       }
   }
@@ -115,14 +119,14 @@ void for_each_texel(const PictureSource& source, const TexelColors& colors, cons
   if (outside > 0) visit(Texel{0, 0, 0, layout.places[3] < 0 ? 1. : 0.}, outside);
 }
 
-struct NegativeTexels {
-  std::size_t count = 0;
-  double lowest = 0;
+/// Extremes of a float image's colours.
+struct FloatRange {
+  std::size_t negative = 0;  ///< texels with a colour below 0
+  double lowest = 0, highest = 0;
 };
 
-/// Texels with a colour below 0, except small ones left by filters.
-NegativeTexels negative_texels(const PictureSource& source) {
-  constexpr float kOfFilters = 1e-4f;  // times white
+/// error Error{bad_input} naming the file, pixel and value: not finite, or above kLargestTexel
+FloatRange float_range(const PictureSource& source) {
   const OpenPicture opened = open_picture(source, kTextureFormats);
   const OIIO::ImageSpec spec = opened.input->spec();
   const TexelLayout layout(spec, source.path);
@@ -131,25 +135,37 @@ NegativeTexels negative_texels(const PictureSource& source) {
   const auto x_begin = std::size_t(std::max(0, spec.full_x - spec.x)),
              x_end = std::size_t(std::min(spec.width, spec.full_x + spec.full_width - spec.x));
   std::vector<float> values(width * std::size_t(rows) * channels), lowest(width);
-  NegativeTexels negative;
+  FloatRange range;
   for (int y = spec.y; y < spec.y + spec.height; y += rows) {
     const int end = std::min(y + rows, spec.y + spec.height);
     read_rows(*opened.input, layout, y, end, OIIO::TypeFloat, values.data(), source.path);
     for (int row = std::max(y, spec.full_y); row < std::min(end, spec.full_y + spec.full_height); ++row) {
       std::ranges::fill(lowest, 0.0f);
-      for (std::size_t c = 0; c < 3; ++c) {
-        if (layout.places[c] < 0) continue;
+      float highest = 0;
+      for (std::size_t c = 0; c < 4; ++c) {
+        const bool is_grey_again = (c == 1 || c == 2) && layout.places[c] == layout.places[0];
+        if (layout.places[c] < 0 || is_grey_again) continue;
         const float* const first =
             &values[std::size_t(row - y) * width * channels] + std::size_t(layout.places[c] - layout.begin);
-        for (std::size_t x = x_begin; x < x_end; ++x) lowest[x] = std::min(lowest[x], first[x * channels]);
+        for (std::size_t x = x_begin; x < x_end; ++x) {
+          const float value = first[x * channels];
+          if (!(std::abs(value) <= float(kLargestTexel)))
+            throw bad_file(source.path, OIIO::Strutil::fmt::format(
+                                            "pixel ({}, {}) {}: {:g}", int(x) + spec.x - spec.full_x,
+                                            row - spec.full_y, kTexelOutOfRange, value));
+          if (c == 3) continue;
+          lowest[x] = std::min(lowest[x], value);
+          highest = std::max(highest, value);
+        }
       }
+      range.highest = std::max(range.highest, double(highest));
       for (const float value : lowest) {
-        negative.count += value < -kOfFilters ? 1 : 0;
-        negative.lowest = std::min(negative.lowest, double(value));
+        range.negative += value < -kOfFilters ? 1 : 0;
+        range.lowest = std::min(range.lowest, double(value));
       }
     }
   }
-  return negative;
+  return range;
 }
 
 class OiioPicture : public CachedPicture {
@@ -163,7 +179,8 @@ class OiioPicture : public CachedPicture {
     const TexelLayout layout(opened.input->spec(), source_->path);
     const OIIO::ImageSpec spec = layout.spec(opened.input->spec());
     colors_ = TexelColors(opened.input->spec(), opened.format, layout, encoding, source_->path);
-    add_warnings(layout, spec, encoding.content == TextureContent::colors && opened.format != "hdr");
+    if (spec.format.is_floating_point()) range_ = float_range(*source_);
+    add_warnings(layout, spec, encoding.content == TextureContent::colors);
     channels_ = layout.channels;
     is_windowed_ = layout.is_windowed;
     for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = layout.places[c] >= 0;
@@ -237,13 +254,29 @@ class OiioPicture : public CachedPicture {
     return sum;
   }
 
+  TexelsAboveOne above_one(const Vec3d& scale) const override {
+    if (!range_ || (colors_.are_plain() && range_->highest * max_component(scale) <= 1)) return {};
+    const std::lock_guard lock(above_one_mutex_);
+    const std::array<double, 3> key{scale.x, scale.y, scale.z};
+    if (const auto known = above_one_.find(key); known != above_one_.end()) return known->second;
+    TexelsAboveOne above;
+    for_each_texel(*source_, colors_, [&](const Texel& texel, std::size_t times) {
+      const double highest = std::max({texel[0] * scale.x, texel[1] * scale.y, texel[2] * scale.z});
+      above.texels += times;
+      above.count += highest > 1 + double(kOfFilters) ? times : 0;
+      above.largest = std::max(above.largest, highest);
+      return true;
+    });
+    above_one_[key] = above;
+    return above;
+  }
+
   std::array<bool, 4> channels() const override { return has_channel_; }
   TextureMemory memory() const override { return memory_; }
   std::string warning() const override { return warning_; }
 
  private:
-  /// in    may_be_negative: false for data, and for a format without a sign
-  void add_warnings(const TexelLayout& layout, const OIIO::ImageSpec& spec, bool may_be_negative) {
+  void add_warnings(const TexelLayout& layout, const OIIO::ImageSpec& spec, bool is_color) {
     const auto add = [this](const std::string& text) {
       warning_ += (warning_.empty() ? source_->path + ": " : "; ") + text;
     };
@@ -251,12 +284,10 @@ class OiioPicture : public CachedPicture {
       add(std::string("the file does not define the meaning of ") +
           (layout.ignored == 1 ? "a channel besides grey, which is" : "channels besides grey, which are") +
           " not used");
-    if (!may_be_negative || !spec.format.is_floating_point()) return;
-    const auto [count, lowest] = negative_texels(*source_);
-    if (count > 0)
+    if (is_color && range_ && range_->negative > 0)
       add(OIIO::Strutil::fmt::format(
-          "{} of {} texels have a negative colour, rendered as 0; the lowest is {:.3g}", count,
-          spec.image_pixels(), lowest));
+          "{} of {} texels have a negative colour, rendered as 0; the lowest is {:.3g}", range_->negative,
+          spec.image_pixels(), range_->lowest));
   }
 
   [[noreturn]] void fail() const {
@@ -268,6 +299,9 @@ class OiioPicture : public CachedPicture {
   std::shared_ptr<const PictureSource> source_;
   std::shared_ptr<ReadFailure> failure_ = std::make_shared<ReadFailure>();
   TexelColors colors_;
+  std::optional<FloatRange> range_;  // none: integers
+  mutable std::mutex above_one_mutex_;
+  mutable std::map<std::array<double, 3>, TexelsAboveOne> above_one_;  // by scale
   std::string warning_;
   int channels_ = 0;  // channels of a texel
   std::array<bool, 4> has_channel_{};

@@ -176,9 +176,25 @@ Scene read_scene(const Document& document) {
   return scene;
 }
 
+/// Warning of a texture's colours above 1; empty: none, or a texture relative to its mean.
+std::string clipped_colors(const std::optional<Texture>& texture) {
+  if (!texture || texture->is_relative) return {};
+  const TexelsAboveOne above = texture->file->above_one(texture->scale);
+  if (above.count == 0) return {};
+  return fmt::format("{}: {} of {} texels{} have a colour above 1, rendered as 1; the largest is {:.3g}",
+                     texture->file->path(), above.count, above.texels,
+                     texture->scale == Vec3d(1) ? "" : " times their scale", above.largest);
+}
+
 /// Each file once.
 std::vector<std::string> texture_warnings(const Scene& scene) {
   std::set<std::string> warnings;
+  for (const Shape& shape : scene.shapes) {
+    warnings.insert(clipped_colors(shape.reflectance_texture));
+    if (!shape.medium) continue;
+    warnings.insert(clipped_colors(scene.media[*shape.medium].tint_texture));
+    warnings.insert(clipped_colors(scene.media[*shape.medium].base_texture));
+  }
   for (const Shape& shape : scene.shapes)
     for (const Texture* texture : textures_of(scene, shape)) warnings.insert(texture->file->warning());
   warnings.erase("");

@@ -62,7 +62,8 @@ class Override {
 
   void apply() {
     const std::size_t equals = end_of_path();
-    if (equals == std::string_view::npos || equals == 0) fail("no value given", "path.to.key=value");
+    if (equals == std::string_view::npos) fail("no value given", "path.to.key=value");
+    if (equals == 0) fail("no path given", "path.to.key=value");
     const std::string_view path = text_.substr(0, equals);
     if (std::ranges::count(path, '.') >= max_depth)
       fail("the path is nested too deeply", "at most " + std::to_string(max_depth) + " levels");

@@ -87,10 +87,11 @@ Member<Settings> read_by(void (*read)(Settings&, const Value&, double), Member<S
 constexpr double kLeastTolerance = 1e-4;  // limit of single precision
 
 void read_tolerance(Settings& settings, const Value& value, double) {
-  settings.tolerance = value.number({0, 1, true});
-  if (settings.tolerance < kLeastTolerance)
+  const Node& node = value.node();
+  if (node.kind == Node::Kind::number && node.number > 0 && node.number < kLeastTolerance)
     value.fail("is below the limit of single precision: sums have an error of 0.006 %",
                "at least 1e-4; \"evaluator\": \"brute_force\" is exact");
+  settings.tolerance = value.number();
 }
 
 void read_laboratory(Settings& settings, const Value& value, double mm_per_unit) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/lower_case.h"
 #include "values/json_tree.h"
 #include "values/key_info.h"
 
@@ -126,14 +127,14 @@ Names named_otherwise(std::string_view name, std::span<const std::string_view> c
   return found;
 }
 
-/// The one candidate of similar spelling, or none.
+/// The one candidate of similar spelling in any case, or none.
 Names nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
   constexpr std::size_t longest = 64;  // longer names, possibly megabytes, match nothing
   Names nearest;
   std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
   for (const std::string_view candidate : candidates) {
     if (name.size() > longest || candidate.size() > longest) continue;
-    const std::size_t distance = edit_distance(name, candidate);
+    const std::size_t distance = edit_distance(in_lower_case(name), in_lower_case(candidate));
     if (distance < least && distance < candidate.size()) {
       least = distance;
       nearest = {std::string(candidate)};

@@ -216,11 +216,19 @@ std::string Value::describe() const {
     case Node::Kind::string:
       return '"' + printable(node_->text) + '"';
     case Node::Kind::array:
-      return "a list of " + std::to_string(node_->children.size());
+      return describe_list();
     case Node::Kind::object:
       break;
   }
   return describe_object();
+}
+
+/// "[0, 0, 1]", or the number of elements of a long list.
+std::string Value::describe_list() const {
+  constexpr std::size_t kLongest = 60;
+  std::string text = to_json(*node_);
+  const bool is_line = text.size() <= kLongest && text.find('\n') == text.npos;
+  return is_line ? text : "a list of " + std::to_string(node_->children.size());
 }
 
 /// "an object with the keys 'texture' and 'scale'"

@@ -70,6 +70,7 @@ class Value {
  protected:
   std::string name() const;      ///< for messages
   std::string describe() const;  ///< text of the value, for messages
+  std::string describe_list() const;
   std::string describe_object() const;
   std::string path_of(std::string_view child) const;
   const Node& require_kind(Node::Kind kind, const std::string& expected) const;

@@ -38,6 +38,9 @@ TEST(GltfBadInput, IsNamed) {
       {[](Json& j) { j["accessors"][1]["count"] = 23; },
        "test.gltf: accessors[1] has the wrong number of normals (expected 24, the number of positions, got "
        "23)"},
+      {[](Json& j) { j["accessors"][0]["componentType"] = 5121; },
+       "test.gltf: accessors[0] has positions that are not floats (expected a componentType of 5126, or "
+       "KHR_mesh_quantization, got 5121)"},
       {[](Json& j) { j["accessors"][2]["componentType"] = 5126; },
        "test.gltf: accessors[2] cannot hold indices"},
       {[](Json& j) { j["accessors"][0]["count"] = 4; },
@@ -185,6 +188,11 @@ TEST(GltfBadInput, BrokenFilesAreNamed) {
   for (const std::size_t length : {1u, 12u, 19u, 20u, 100u, 700u, unsigned(glb.size()) - 1})
     EXPECT_TRUE(error_of(glb.substr(0, length), "a.glb").starts_with("a.glb: ")) << length;
   EXPECT_EQ(error_of("", "a.glb"), "a.glb: the file is empty");
+  std::string longer = glb;  // by its header
+  longer[8] = char(longer[8] + 1);
+  const std::size_t size = glb.size();
+  EXPECT_EQ(error_of(longer, "a.glb"), "a.glb: the file is truncated (expected " + std::to_string(size + 1) +
+                                           " bytes by its header, got " + std::to_string(size) + ")");
   EXPECT_TRUE(error_of("{\"asset\": ").starts_with("test.gltf: "));
   EXPECT_TRUE(error_of(std::string(1 << 20, '[')).starts_with("test.gltf: its JSON is nested too deep"));
   std::string lying = glb;  // the last chunk claims 8 bytes more than there are

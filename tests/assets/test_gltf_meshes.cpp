@@ -93,6 +93,7 @@ TEST(GltfMeshes, QuantizedPositionsAreNumbers) {
     const std::vector<std::int16_t> corners{-32768, 0, 0, 0, 32767, 0, 0, 0, 16384};
     const int positions = asset.accessor("VEC3", kShort, corners, normalized);
     asset.mesh({{"attributes", {{"POSITION", positions}}}});
+    asset.json["extensionsUsed"] = {"KHR_mesh_quantization"};
     const ScratchFolder folder;
     put_bytes(folder.file("a.glb"), asset.glb());
     const Mesh mesh = mesh_of(folder.file("a.glb"), "0/0").mesh;

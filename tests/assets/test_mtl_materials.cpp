@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Statements of MTL files: read as other programs read them, or reported by file and line.
+#include <filesystem>
+
 #include "asset_test.h"
+#include "image/texture_file.h"
 #include "support/pictures.h"
 
 namespace opaline::asset_test {
@@ -168,6 +171,56 @@ TEST(MtlMaterials, BrokenTexturesAreNamed) {
     EXPECT_EQ(scene.shapes.at(0).reflectance, Rgb(.2));
     EXPECT_FALSE(scene.shapes[0].reflectance_texture);
   }
+}
+
+// Claim: so is an image with a texel above 1e30, by pixel and value. Source: docs/assets.md. Fails if: it is an error of the
+// asset.
+TEST(MtlMaterials, TexelsOutOfRangeAreNamed) {
+  for (const std::string statement : {"map_Kd", "bump"}) {
+    const MtlFolder folder("newmtl red\nKd 0.2\n" + statement + " p.exr\n");
+    test::put_exr(folder.file("p.exr"), 4, 4, [](int x, int y) {
+      return std::array<double, 3>{x == 2 && y == 1 ? 2e30 : .5, .1 * x, .5};
+    });
+    const Scene scene = load_scene(folder.file("a.obj"));
+    EXPECT_EQ(scene.warnings, std::vector{folder.file("a.mtl") + ":3: " + statement +
+                                          " 'p.exr' of material 'red': pixel (2, 1) is not finite or above "
+                                          "1e30: 2e+30"});
+    EXPECT_EQ(scene.shapes.at(0).reflectance, Rgb(.2));
+  }
+}
+
+// Claim: of -mm the gain applies, and the warning says that the base does not. Source: by hand. Fails if: it says that the option is
+// ignored.
+TEST(MtlMaterials, OnlyTheBaseOfMmIsIgnored) {
+  const MtlFolder folder("newmtl red\nmap_Kd -mm 0.5 0.25 p.png\n");
+  test::put_png(folder.file("p.png"), 4, 4, [](int x, int) { return test::Bytes{40 * x, 100, 50}; });
+  const Scene scene = load_scene(folder.file("a.obj"));
+  EXPECT_EQ(scene.warnings,
+            std::vector{folder.file("a.mtl") + ":2: map_Kd 'p.png' of material 'red': the base 0.5 of -mm is "
+                                               "ignored; the gain 0.25 applies"});
+  EXPECT_EQ(scene.shapes.at(0).reflectance_texture.value().scale, Rgb(.25));
+}
+
+// Claim: a comment after a file's name is no part of it, unless a file has this name; a backslash at the end of a line continues it,
+// in both files, and later lines keep their numbers. Source: Wavefront's formats. Fails if: the file is not found.
+TEST(MtlMaterials, CommentsAndContinuedLinesAreRead) {
+  const MtlFolder folder("newmtl red\nmap_Kd \\\r\n p.png # t\nxyzzy 3\n");
+  const auto color = [](int x, int) { return test::Bytes{40 * x, 100, 50}; };
+  test::put_png(folder.file("p.png"), 4, 4, color);
+  put_bytes(folder.file("a.obj"),
+            "mtllib \\\n a.mtl # library\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl \\\nred\n"
+            "f 1/1 2/2 \\\n3/3\n");
+  const auto texture_name = [&] {
+    const Scene scene = load_scene(folder.file("a.obj"));
+    EXPECT_EQ(scene.warnings,
+              std::vector{folder.file("a.mtl") +
+                          ":4: the statement 'xyzzy' of material 'red' is unknown and ignored"});
+    return scene.shapes.at(0).reflectance_texture.value().file->path();
+  };
+  EXPECT_EQ(texture_name(), folder.file("p.png"));
+  test::put_png(folder.file("q.png"), 4, 4, color);
+  std::filesystem::rename(folder.file("q.png"), folder.file("p.png # t"));
+  EXPECT_EQ(texture_name(), folder.file("p.png # t"));
 }
 
 }  // namespace

@@ -56,28 +56,61 @@ TEST(DamagedTextures, RefusesChunksWithoutTheirPixels) {
   });
 }
 
-// Claim: looking up a texel that is NaN, infinite or above 1e30 (slopes between such texels overflow) is an error naming the
-// file. Source: by hand. Fails if the lookup returns the texel.
+// Claim: a file with a texel that is NaN, infinite or above 1e30 (slopes between such texels overflow) is refused, by pixel and
+// value. Source: by hand. Fails if a lookup returns the texel.
 TEST(DamagedTextures, RefusesTexelsOutOfRange) {
   const ScratchFolder folder;
-  const auto message_of_lookup = [&](OIIO::TypeDesc type, int tile, float value) -> std::string {
+  const auto message_of_value = [&](OIIO::TypeDesc type, int tile, float value) -> std::string {
     OIIO::ImageSpec spec(64, 64, 1, type);
     spec.tile_width = spec.tile_height = tile;
     const std::string path = folder.file(std::to_string(value) + std::to_string(tile) + ".exr");
     put_channels(path, spec, {"Y"}, {std::vector<float>{1}, std::vector<float>{value}});
     try {
-      TextureFile::open(path, ColorSpace::linear)->at({.75f, .5f, {}, {}});
+      TextureFile::open(path, ColorSpace::linear);
     } catch (const Error& error) {
       return error.message;
     }
     return {};
   };
-  const std::string refused = "has a texel that is not finite or above 1e30";
+  const std::string refused = "pixel (32, 0) is not finite or above 1e30: ";
   for (const int tile : {0, 32}) {
-    EXPECT_EQ(message_of_lookup(OIIO::TypeFloat, tile, 9e29f), "");
-    for (const float value : {NAN, INFINITY, -1.1e30f})
-      EXPECT_NE(message_of_lookup(OIIO::TypeFloat, tile, value).find(refused), std::string::npos) << value;
-    EXPECT_NE(message_of_lookup(OIIO::TypeHalf, tile, NAN).find(refused), std::string::npos);
+    EXPECT_EQ(message_of_value(OIIO::TypeFloat, tile, 9e29f), "");
+    for (const auto& [value, text] :
+         {std::pair(NAN, "nan"), std::pair(INFINITY, "inf"), std::pair(-1.1e30f, "-1.1e+30")})
+      EXPECT_EQ(message_of_value(OIIO::TypeFloat, tile, value), refused + text);
+    EXPECT_EQ(message_of_value(OIIO::TypeHalf, tile, NAN), refused + "nan");
+  }
+}
+
+/// An uncompressed grey TIFF of 16 x 16 bytes whose directory precedes its pixels.
+std::string tiff_of_bytes() {
+  constexpr int kSide = 16, kEntries = 8, kPixels = 8 + 2 + 12 * kEntries + 4;
+  std::string bytes("II*\0\x08\0\0\0", 8);
+  const auto add = [&](int number, int size) {
+    for (int i = 0; i < size; ++i) bytes += char(number >> 8 * i & 255);
+  };
+  add(kEntries, 2);
+  // Width, height, bits, no compression, black is zero, place of the only strip, its rows, its bytes.
+  for (const auto& [tag, value] :
+       {std::pair(256, kSide), std::pair(257, kSide), std::pair(258, 8), std::pair(259, 1), std::pair(262, 1),
+        std::pair(273, kPixels), std::pair(278, kSide), std::pair(279, kSide * kSide)})
+    for (const auto& [number, size] :
+         {std::pair(tag, 2), std::pair(4, 2), std::pair(1, 4), std::pair(value, 4)})
+      add(number, size);
+  add(0, 4);
+  return bytes + std::string(kSide * kSide, char(200));
+}
+
+// Claim: an uncompressed TIFF that lacks any of its bytes is refused. Source: TIFF 6.0. Fails if OpenImageIO alone judges, which
+// reads the missing pixels as black.
+TEST(DamagedTextures, RefusesShortTiffs) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("a.tif"), whole = tiff_of_bytes();
+  put_bytes(path, whole);
+  EXPECT_EQ(message_of(path), "");
+  for (const std::size_t length : {whole.size() - 1, whole.size() - 128, std::size_t(111), std::size_t(50)}) {
+    put_bytes(path, whole.substr(0, length));
+    EXPECT_NE(message_of(path).find("the image is truncated"), std::string::npos) << length;
   }
 }
 

@@ -127,6 +127,8 @@ TEST(TextureFile, TakesChannelsByTheirNames) {
   EXPECT_NE(refused({"U", "V"})
                 .find("has no colours (expected the channels R, G and B, or Y, or one alone, got U, V)"),
             std::string::npos);
+  EXPECT_NE(refused({"X", "Y", "Z"}).find("has no colours"), std::string::npos);  // positions
+  EXPECT_EQ(refused({"A", "Y", "Z"}), "");                                        // grey with depths
   EXPECT_NE(refused({"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"}).find("several colour layers"),
             std::string::npos);
 #if OIIO_VERSION < 20500  // later versions convert these channels to R, G and B

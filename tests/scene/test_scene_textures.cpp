@@ -135,5 +135,38 @@ TEST(SceneTextures, AreRefusedWhereTheyStand) {
          {"tint", "subsurface_color"});
 }
 
+// Claim: texels out of range are named at the texture's place in the scene, by pixel and value. Fails if the error waits for the
+// render, without a line.
+TEST(SceneTextures, TexelsOutOfRangeAreNamedInTheScene) {
+  const TextureFolder files;
+  test::put_exr(files.folder.file("big.exr"), 4, 2, [](int x, int y) {
+    return std::array<double, 3>{.5, x == 3 && y == 1 ? -2e30 : .5, .5};
+  });
+  const Error error = files.error(shape(R"("reflectance": {"texture": "big.exr"})"));
+  EXPECT_EQ(error.line, 2) << error.what();
+  expect_fragments(error, {"big.exr", "scene.json", "pixel (3, 1) is not finite or above 1e30: -2e+30"});
+}
+
+// Claim: colours above 1, rendered as 1, are one warning by their number and the largest; those that a scale brings below 1, and
+// those over a mean, are not. Fails if a reflectance of 40 is rendered as 1 in silence.
+TEST(SceneTextures, ColoursAboveOneAreAWarning) {
+  const TextureFolder files;
+  test::put_exr(files.folder.file("bright.exr"), 4, 2, [](int x, int) {
+    return std::array<double, 3>{.5, x == 3 ? 40 : .5, .5};
+  });
+  const auto warnings = [&](const std::string& text) { return files.scene(text).warnings; };
+  const std::string path = files.folder.file("bright.exr");
+  EXPECT_EQ(warnings(shape(R"("reflectance": {"texture": "bright.exr"})")),
+            std::vector{path + ": 2 of 8 texels have a colour above 1, rendered as 1; the largest is 40"});
+  EXPECT_EQ(warnings(shape(R"("reflectance": {"texture": "bright.exr", "scale": 0.1})")),
+            std::vector{path + ": 2 of 8 texels times their scale have a colour above 1, rendered as 1; the "
+                               "largest is 4"});
+  EXPECT_EQ(warnings(shape(R"("reflectance": {"texture": "bright.exr", "scale": 0.025})")),
+            std::vector<std::string>{});
+  EXPECT_EQ(warnings(R"({"media": {"m": {"subsurface_color": {"texture": "bright.exr", "scale": 0.02},
+                         "subsurface_radius": 1}}, "shapes": [{"sphere": {"radius": 1}, "medium": "m"}]})"),
+            std::vector<std::string>{});
+}
+
 }  // namespace
 }  // namespace opaline

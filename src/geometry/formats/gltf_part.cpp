@@ -211,6 +211,7 @@ GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, MeshUvs 
     fail_at(gltf.path, place, "has no positions", "the attribute POSITION");
   GltfPart part;
   part.positions = read_vectors(gltf, positions->second);
+  check_positions_type(gltf, positions->second);
   check_positions(gltf, positions->second, part.positions);
   read_normals(gltf, primitive, part);
   if (uvs != MeshUvs::unread) read_uvs(gltf, primitive, part);
