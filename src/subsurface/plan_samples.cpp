@@ -133,7 +133,7 @@ bool is_too_thin_for_cells(const BodyPlan& group) {
 // limit memory.
 void choose_cells(const Scene& scene, const World& world, BodyPlan& group,
                   std::vector<std::string>& warnings) {
-  constexpr double kAcrossThin = 4, kSmallest = .25;
+  constexpr double kAcrossThin = 2, kSmallest = .25;
   constexpr double kOfVarying = .5;    // a cell has one medium, and light blurs detail below a mean free path
   constexpr double kFewestFaces = 60;  // fewest faces of cells, on the surface
   const double length = group.smallest_mean_free_path;
