@@ -54,10 +54,15 @@ std::vector<float> brightness(const Image& image, std::size_t step) {
   return values;
 }
 
-/// Brightness is estimated from about 65,000 pixels; all pixels are searched for covered ones.
-std::vector<float> sampled_brightness(const Image& image) {
+/// Odd step to about 65,000 pixels.
+std::size_t sampling_step(const Image& image) {
   constexpr std::size_t enough = 65536;
-  const std::size_t step = (image.pixels.size() / image.channels.size() / enough) | 1;
+  return (image.pixels.size() / image.channels.size() / enough) | 1;
+}
+
+/// Brightness is estimated from some pixels; all are searched for covered ones.
+std::vector<float> sampled_brightness(const Image& image) {
+  const std::size_t step = sampling_step(image);
   std::vector<float> values = brightness(image, step);
   return values.empty() && step > 1 ? brightness(image, 1) : values;
 }
@@ -68,6 +73,7 @@ struct Seen {
   bool is_behind;  ///< by the shading normal
 };
 
+/// At some of the pixels.
 std::vector<Seen> seen_points(const Image& image, const Vec3d& camera) {
   const std::size_t stride = image.channels.size(), coverage = channel(image, "A");
   const std::array<std::size_t, 3> normal{channel(image, "N.X"), channel(image, "N.Y"),
@@ -75,7 +81,7 @@ std::vector<Seen> seen_points(const Image& image, const Vec3d& camera) {
       place{channel(image, "P.X"), channel(image, "P.Y"), channel(image, "P.Z")};
   std::vector<Seen> seen;
   if (normal[2] == stride || place[2] == stride) return seen;
-  for (std::size_t at = 0; at < image.pixels.size(); at += stride) {
+  for (std::size_t at = 0; at < image.pixels.size(); at += stride * sampling_step(image)) {
     const float* const pixel = image.pixels.data() + at;
     if (pixel[coverage] < 1) continue;
     const auto vector = [&](const std::array<std::size_t, 3>& of) {
@@ -92,7 +98,10 @@ bool are_mostly_backs(std::span<const Seen> seen) {
 }
 
 /// Open translucent mesh seen from behind, or camera inside a body; empty: neither. Opaque surfaces have no back.
-std::string backs_are_seen(const Scene& scene, const World& world, std::span<const Seen> seen) {
+std::string backs_are_seen(const Scene& scene, const World& world, const Image& image) {
+  if (std::ranges::none_of(scene.shapes, [](const Shape& shape) { return shape.medium.has_value(); }))
+    return {};
+  const std::vector<Seen> seen = seen_points(image, scene.camera.position);
   constexpr double kRounding = 1e-4;      // diagonals
   constexpr double kConsiderable = 0.02;  // fraction of the points
   for (std::size_t m = 0; m < world.meshes.size(); ++m) {
@@ -108,9 +117,7 @@ std::string backs_are_seen(const Scene& scene, const World& world, std::span<con
           "faces away; vertex normals towards the camera turn it, or close the mesh",
           scene.shapes[m].name);
   }
-  const bool is_translucent =
-      std::ranges::any_of(scene.shapes, [](const Shape& shape) { return shape.medium.has_value(); });
-  if (!is_translucent || !are_mostly_backs(seen)) return {};
+  if (!are_mostly_backs(seen)) return {};
   return "the camera sees the back side of a translucent surface: it is inside the body; move the camera";
 }
 
@@ -330,9 +337,7 @@ std::vector<std::string> picture_warnings(const Scene& scene, const World& world
   if (world.meshes.empty() || scene.lights.empty()) return {};  // the plan warns of this
   std::vector<float> values = sampled_brightness(image);
   if (values.empty()) return {nothing_in_view(scene, world)};
-  if (std::string backs = backs_are_seen(scene, world, seen_points(image, scene.camera.position));
-      !backs.empty())
-    return {std::move(backs)};
+  if (std::string backs = backs_are_seen(scene, world, image); !backs.empty()) return {std::move(backs)};
   const double gain = std::exp2(scene.film.exposure);
   const auto quantile = [&](double share) {
     const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "core/random.h"
 #include "geometry/follow_ray.h"
 #include "scene/names.h"
 #include "subsurface/method.h"
@@ -80,12 +81,11 @@ std::vector<Vec3d> points_below(const Mesh& mesh, const Bounds& box, double dept
   }
   std::vector<Vec3d> points;
   if (!(area > 0)) return points;
-  constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;  // Roberts 2018, the R2 sequence
   for (std::size_t i = 0; i < kTested; ++i) {
     const auto at = std::ranges::upper_bound(sums, area * (double(i) + .5) / kTested);
     const auto& [a, b, c] = pieces[std::min(std::size_t(at - sums.begin()), pieces.size() - 1)];
-    const double u = std::sqrt(std::fmod(double(i + 1) * kStepU, 1.)),
-                 v = std::fmod(double(i + 1) * kStepV, 1.);
+    const auto [square, v] = r2_point(i, {.5, .5});
+    const double u = std::sqrt(square);
     points.push_back(a + (b - a) * (u * (1 - v)) + (c - a) * (u * v) -
                      normalized(cross(b - a, c - a)) * depth);
   }

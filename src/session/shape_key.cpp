@@ -70,8 +70,7 @@ StageKey SourceKeys::key(const Shape& shape, MeshUvs uvs) {
 
 StageKey shape_key(const Shape& shape, const StageKey& source) {
   KeyBuilder key("shape", 1);
-  const bool may_be_open = !shape.medium;  // allows an open mesh without a warning
-  key.add(source).add(shape.to_world).add(shape.normals).add(may_be_open);
+  key.add(source).add(shape.to_world).add(shape.normals).add(shape.medium.has_value());
   key.add(shape.name);  // used in messages
   return key.key();
 }

@@ -7,10 +7,8 @@
 #include <optional>
 
 #include "core/parallel.h"
-#include "core/random.h"
-#include "lights/light.h"
-#include "transport/fresnel.h"
 #include "transport/smooth_boundary.h"
+#include "volume/entry_directions.h"
 
 namespace opaline {
 namespace {
@@ -25,61 +23,6 @@ constexpr double kStep = .4;            // cells
 double golden_point(std::size_t i) {
   const double turns = .5 + .6180339887498949 * double(i);
   return turns - std::floor(turns);
-}
-
-constexpr std::size_t kDirections = 8;  // per light that is not a point
-// Directions of uniform light, different at neighbouring elements: of an element with the body's mean light or
-// less; most times as many, where it is brighter.
-constexpr std::size_t kAllAround = 5, kMostTimes = 8;
-
-/// Incident directions with their fractions of the transmitted flux.
-struct Directions {
-  struct One {
-    Vec3f outward;
-    double share;
-  };
-  std::array<One, kMostTimes * kAllAround> some;
-  std::size_t count = 0;
-};
-
-Directions towards_light(const Light& light, const BoundaryElement& element, double eta, std::size_t i) {
-  const std::size_t tries = is_delta(light) ? 1 : kDirections;
-  Directions found;
-  double sum = 0;
-  for (std::size_t t = 0; t < tries; ++t) {
-    const LightSample sample =
-        sample_light(light, element.position, element.normal, r2_point(i * tries + t, {.5, .5}), int(tries));
-    const double cosine = double(dot(sample.direction, element.normal));
-    if (!(sample.weight > 0 && cosine > 0)) continue;
-    const double share = double(sample.weight) * cosine * fresnel_transmittance(std::min(cosine, 1.0), eta);
-    found.some[found.count++] = {sample.direction, share};
-    sum += share;
-  }
-  if (!(sum > 0)) {
-    found = {{{{element.normal, 1}}}, 1};
-    sum = 1;
-  }
-  for (std::size_t n = 0; n < found.count; ++n) found.some[n].share /= sum;
-  return found;
-}
-
-// first: the first of `count` points of a low-discrepancy sequence
-Directions all_around(const BoundaryElement& element, double eta, std::size_t first, std::size_t count) {
-  Vec3f x, y;
-  tangent_frame(element.normal, x, y);
-  Directions found;
-  double sum = 0;
-  for (; found.count < count; ++found.count) {
-    const auto [u, v] = r2_point(first + found.count, {.5, .5});
-    const double sine = std::sqrt(u), cosine = std::sqrt(1 - u), angle = 2 * std::numbers::pi * v;
-    const double share = fresnel_transmittance(cosine, eta);
-    found.some[found.count] = {x * float(sine * std::cos(angle)) + y * float(sine * std::sin(angle)) +
-                                   element.normal * float(cosine),
-                               share};
-    sum += share;
-  }
-  for (Directions::One& one : found.some) one.share /= sum;
-  return found;
 }
 
 /// The boundary elements of each cell.
@@ -368,37 +311,14 @@ std::vector<Rgb> entering_flux(const DiffusionSpace& space, const OfSample& ente
   return flux;
 }
 
-/// Numbers of directions of uniform light: each carries about the same flux, in the channel with most relative to all
-/// light of the body.
-class DirectionCounts {
- public:
-  DirectionCounts(const DiffusionSpace& space, std::span<const Rgb> flux, std::span<const RgbF> beside) {
-    Rgb sum{}, other{};
-    for (const Rgb& each : flux) sum += each;
-    for (std::size_t s = 0; s < beside.size(); ++s) other += Rgb(beside[s]) * double(space.samples[s].area);
-    for (std::size_t c = 0; c < 3; ++c)
-      if (sum[c] > 0) per_flux_[c] = double(flux.size()) / std::max(sum[c], other[c]);
-  }
-  std::size_t of(const Rgb& flux) const {
-    const double mean_times = max_component(flux * per_flux_);
-    std::size_t times = 1;  // powers of two: rounding of scaled lights seldom matters
-    while (double(times) * std::numbers::sqrt2 < mean_times && times < kMostTimes) times *= 2;
-    return times * kAllAround;
-  }
-
- private:
-  Rgb per_flux_{};
-};
-
 /// Light entering at all elements. Each of a fixed number of parts of the elements has its own sums, added in order,
 /// which makes the bits independent of the number of threads.
-class Entry {
+class EntryInParts {
  public:
-  Entry(const DiffusionSpace& space, Monitor* monitor)
-      : space_(space),
-        monitor_(monitor),
-        elements_of_(space.attached, space.grid.cells().size()),
-        parts_(kParts, Depositor(space, elements_of_)) {}
+  EntryInParts(const DiffusionSpace& space, Monitor* monitor)
+      : space_(space), monitor_(monitor), elements_of_(space.attached, space.grid.cells().size()) {
+    for (std::size_t part = 0; part < kParts; ++part) parts_.emplace_back(space, elements_of_);
+  }
 
   /// in    flux: one per element; directions: of an element, by its index
   template <class DirectionsOf>
@@ -408,9 +328,8 @@ class Entry {
       for (std::size_t i = begin; i < end; ++i) {
         advance(monitor_, 1);
         if (!(max_component(flux[i]) > 0) || space_.attached[i].cell == DiffusionGrid::kNone) continue;
-        const Directions from = directions(i);
-        for (std::size_t n = 0; n < from.count; ++n)
-          parts_[part].enter(Vec3d(from.some[n].outward), flux[i] * from.some[n].share, i);
+        for (const EntryDirection& from : directions(i).all())
+          parts_[part].enter(Vec3d(from.outward), flux[i] * from.share, i);
       }
     });
   }
@@ -437,7 +356,7 @@ class Entry {
 }  // namespace
 
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor) {
-  Entry entry(space, monitor);
+  EntryInParts entry(space, monitor);
   const std::vector<BoundaryElement>& elements = space.boundary.elements;
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
     const std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) {
@@ -451,10 +370,11 @@ FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLigh
   if (light.even.empty()) return entry.take();
   const std::vector<Rgb> flux =
       entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
-  const DirectionCounts counts(space, flux, light.beside);
-  entry.enter(flux, [&](std::size_t i) {
-    return all_around(elements[i], space.eta(), i * kAllAround, counts.of(flux[i]));
-  });
+  Rgb beside{};
+  for (std::size_t s = 0; s < light.beside.size(); ++s)
+    beside += Rgb(light.beside[s]) * double(space.samples[s].area);
+  const EvenDirections even(flux, beside);
+  entry.enter(flux, [&](std::size_t i) { return even.at(elements[i], space.eta(), flux[i], i); });
   return entry.take();
 }
 

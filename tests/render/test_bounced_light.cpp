@@ -288,7 +288,7 @@ RgbF mean_on_the_right(const Scene& scene) {
 // Claim: light that a plate sends to another of the same body enters that, as much as random walks say. Source: this
 // function by walks that enter again, with 5000 cells of 3 % noise each. Tolerance: 7 %; measured -6.2, -3.0 and -1.7 %, as
 // the 1.2 % of red light that cross the sending plate without a collision, straight at the other, are taken as diffuse.
-// Fails if: nothing enters again (nothing is left of it), or what enters is not spread over the cone of refracted light.
+// Fails if: re-entry is missing (no light), or entering light is not spread over the cone of refracted directions.
 TEST(BouncedLight, EntersTheSameBodyAgainAsWalksDo) {
   const Scene scene = parse_scene(R"({
     "media": {"marble": {"preset": "marble"}},
