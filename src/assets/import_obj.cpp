@@ -13,6 +13,7 @@
 #include "assets/mtl_texture.h"
 #include "assets/text_lines.h"
 #include "core/byte_order_mark.h"
+#include "core/lower_case.h"
 #include "geometry/formats/obj_material.h"
 #include "image/texture_file.h"
 #include "opaline/error.h"
@@ -243,7 +244,7 @@ class ObjImporter {
   Surface surface_of(const MtlMaterial& material) {
     Surface surface;
     surface.color = kGrey;
-    std::vector<MtlStatement> emission, transparency;
+    std::vector<MtlStatement> emission, transparency, textures;
     for (const MtlStatement& statement : material.statements) {
       const MtlUse use = use_of(statement);
       const bool needs_uvs = use == MtlUse::color_map || use == MtlUse::bump || use == MtlUse::normal_map;
@@ -259,6 +260,8 @@ class ObjImporter {
         emission.push_back(statement);
       else if (use == MtlUse::transparency)
         transparency.push_back(statement);
+      else if (use == MtlUse::without_analogue && in_lower_case(statement.keyword).starts_with("map_"))
+        textures.push_back(statement);
       else if (use == MtlUse::without_analogue)
         add_unused(surface, statement.keyword);
       else if (use == MtlUse::unknown)
@@ -268,6 +271,7 @@ class ObjImporter {
     }
     warn_of_ignored(material, emission, "emission is not supported");
     warn_of_ignored(material, transparency, "transparency is not supported; the surface renders opaque");
+    warn_of_ignored(material, textures, "the supported textures are map_Kd, bump and norm");
     return surface;
   }
 

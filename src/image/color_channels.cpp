@@ -77,6 +77,12 @@ ChannelPlaces channel_places(const std::vector<std::string>& channels, const std
                  expected, listed(channels));
 }
 
+bool is_color_channel(std::string_view channel) {
+  const std::string component = component_of(channel);
+  return component == "y" || is_color_word(component, 0) || is_color_word(component, 1) ||
+         is_color_word(component, 2);
+}
+
 bool is_matte_channel(std::string_view channel) {
   return channel.starts_with("Crypto");
 }

@@ -32,6 +32,9 @@ using ChannelPlaces = std::array<int, 4>;
 /// error Error{bad_input} naming the file: no such channels, several layers, luminance and chroma (RY, BY)
 ChannelPlaces channel_places(const std::vector<std::string>& channels, const std::string& path);
 
+/// True for the names of R, G, B and Y, of any layer.
+bool is_color_channel(std::string_view channel);
+
 /// True for channels of Cryptomatte: names and coverages, not colours.
 bool is_matte_channel(std::string_view channel);
 /// True for a layer of one light's contribution: "diffuse_NAME", "specular_NAME", "emission_NAME".

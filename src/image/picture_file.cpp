@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "image/color_channels.h"
 #include "image/png_chunks.h"
 #include "image/tiff_strips.h"
 #include "opaline/error.h"
@@ -61,6 +62,16 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::strin
                        std::to_string(std::int64_t(1e-6 * width * height)) + " million; make it smaller");
 }
 
+/// Refuses colours of 32-bit integers in an EXR: identifiers, which OpenImageIO divides by 4294967295.
+void check_color_types(const std::string& path, const OIIO::ImageSpec& spec) {
+  for (int c = 0; c < spec.nchannels; ++c) {
+    const std::string& name = spec.channelnames[std::size_t(c)];
+    if (spec.channelformat(c) == OIIO::TypeUInt32 && (spec.nchannels == 1 || is_color_channel(name)))
+      throw bad_file(path, "the channel " + name + " stores integers (UINT), which are not colours",
+                     "channels of type HALF or FLOAT");
+  }
+}
+
 // libjpeg accepts a missing end, and fills missing pixels with grey.
 void check_jpeg_end(const PictureBytes& bytes, const std::string& path) {
   constexpr std::uintmax_t kTail = 1 << 16;  // programs append notes of their own
@@ -106,6 +117,7 @@ OpenPicture open_picture(const PictureSource& source, std::span<const std::strin
     throw bad_file(source.path, "not a readable image: " + complaint_of(picture.input.get()));
   if (spec.deep) throw bad_file(source.path, "deep images are not supported");
   check_size(source.path, spec, picture.format, bytes.size());
+  if (picture.format == "exr") check_color_types(source.path, spec);
   return picture;
 }
 

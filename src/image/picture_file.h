@@ -24,7 +24,8 @@ struct OpenPicture {
 
 /// Opens a source in one of the formats; must not outlive it. Memory is bounded by the file's length, as a
 /// damaged header may have any size.
-/// error Error{bad_input} naming the file: missing, not a regular file, another format, deep, too large
+/// error Error{bad_input} naming the file: missing, not a regular file, another format, deep, too large,
+/// integer colours in an EXR
 OpenPicture open_picture(const PictureSource& source, std::span<const std::string_view> formats);
 
 /// Checks a PNG's chunks, a JPEG's end and a TIFF's strips, ignored by their decoders.

@@ -267,7 +267,7 @@ std::string too_dark(const Scene& scene, const World& world, double brightest) {
     text +=
         ": no light reaches the visible surfaces; all lights may be behind them, inside a shape or in shadow";
   for (const std::string& cause : causes) text += "; " + cause;
-  return "the image is " + text;
+  return "the object is " + text;
 }
 
 using Corners = std::array<Vec3d, 3>;

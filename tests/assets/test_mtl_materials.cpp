@@ -113,24 +113,28 @@ TEST(MtlMaterials, StatementsWithoutAnalogueAreReportedTogether) {
   const MtlFolder folder(
       "newmtl red\nKd 0.2 0.2 0.2\nKa 1 1 1\nNs 10\nNi 1.45\nillum 2\nKs 0.5 0.5 0.5\nKe 0 0 0\nPr 0.3\nPm "
       "1\n"
-      "Ps 0.2\nPc 0\nTf 0.5 0.5 0.5\naniso 0.5\nanisor 0.1\nmap_Pr p.png\nd 0.5\nTr 0\nKm 0\nKs 0.4 0.5 "
+      "Ps 0.2\nPc 0\nTf 0.5 0.5 0.5\naniso 0.5\nanisor 0.1\nd 0.5\nTr 0\nKm 0\nKs 0.4 0.5 "
       "0.5\n");
   const ImportedAsset import = folder.import();
   ASSERT_EQ(import.not_carried.size(), 2u);
-  EXPECT_EQ(import.not_carried[1], "material 'red': Ks, Pr, Pm, Ps, aniso and map_Pr are ignored");
+  EXPECT_EQ(import.not_carried[1], "material 'red': Ks, Pr, Pm, Ps and aniso are ignored");
   EXPECT_TRUE(MtlFolder("newmtl red\nKd 0.2\nPr 1\nPm 0.0\nTf 1 1 1\nd 1.0\nKs 0\naniso 0\n")
                   .import()
                   .not_carried.empty());
 }
 
-// Claim: emission and transparency are one warning each for a material, at their first statement, in any case. Source: by
-// hand. Tolerance: none. Fails if: they are only listed among unused statements, or once per statement.
-TEST(MtlMaterials, EmissionAndTransparencyAreWarnings) {
+// Claim: emission, transparency and unsupported textures are one warning each for a material, at their first statement, in
+// any case. Source: by hand. Tolerance: none. Fails if: they are only listed among unused statements, or once per statement.
+TEST(MtlMaterials, EmissionTransparencyAndOtherTexturesAreWarnings) {
   EXPECT_EQ(
       warnings_of("newmtl red\nKd 0.2\nKe 1 1 1\nmap_Ke p.png\nd 0.4\nTf 0.9 1 1\nke 2\nd 0.4\n"),
       "a.mtl:3: Ke, map_Ke and ke of material 'red' are ignored: emission is not supported\n"
       "a.mtl:5: d and Tf of material 'red' are ignored: transparency is not supported; the surface renders "
       "opaque\n");
+  EXPECT_EQ(
+      warnings_of("newmtl red\nmap_Pr p.png\nmap_Ks q.png\n"),
+      "a.mtl:2: map_Pr and map_Ks of material 'red' are ignored: the supported textures are map_Kd, bump "
+      "and norm\n");
   EXPECT_EQ(warnings_of("newmtl red\nTr 0.5\n"),
             "a.mtl:2: Tr of material 'red' is ignored: transparency is not supported; the surface renders "
             "opaque\n");

@@ -11,6 +11,7 @@
 #include "image/texture_file.h"
 #include "opaline/error.h"
 #include "opaline/image.h"
+#include "texture_test.h"
 
 namespace opaline::test {
 namespace {
@@ -246,4 +247,28 @@ TEST(TextureColors, NegativeColoursAreAWarning) {
 }
 
 }  // namespace
+// Claim: an EXR whose colours are 32-bit integers is refused as texture and as image, naming the channel; an identifier
+// beside colours is none. Source: OpenEXR's documentation: UINT is for object identifiers. Tolerance: none. Fails if: ones
+// are divided by 4294967295, as OpenImageIO does.
+TEST(TextureColors, IntegerColoursOfExrAreRefused) {
+  const ScratchFolder folder;
+  const auto put = [&](const std::string& name, const std::vector<std::string>& channels,
+                       OIIO::TypeDesc color_type) {
+    OIIO::ImageSpec spec(4, 2, int(channels.size()), OIIO::TypeFloat);
+    for (const std::string& channel : channels)
+      spec.channelformats.push_back(channel == "id" ? OIIO::TypeDesc(OIIO::TypeUInt32) : color_type);
+    test::put_channels(folder.file(name), spec, channels,
+                       {std::vector<float>(channels.size(), .5f), std::vector<float>(channels.size(), .5f)});
+    return folder.file(name);
+  };
+  const std::string expected =
+      "the channel R stores integers (UINT), which are not colours (expected channels of type HALF or FLOAT)";
+  const std::string ids = put("ids.exr", {"R", "G", "B"}, OIIO::TypeUInt32);
+  EXPECT_EQ(test::message_of(ids), ids + ": " + expected);
+  EXPECT_THROW(read_image(ids), Error);
+  const std::string one = put("one.exr", {"mask"}, OIIO::TypeUInt32);
+  EXPECT_NE(test::message_of(one).find("the channel mask stores integers"), std::string::npos);
+  EXPECT_EQ(test::message_of(put("both.exr", {"R", "G", "B", "id"}, OIIO::TypeFloat)), "");
+}
+
 }  // namespace opaline::test

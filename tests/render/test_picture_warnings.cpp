@@ -177,9 +177,9 @@ TEST(PictureWarnings, LightsThatLightNothing) {
   EXPECT_TRUE(warnings_of(scene).empty());
 
   scene.lights = {point_light({30, 40, 80}, Rgb(0))};
-  expect_warning(scene, {"the image is black", "the light point emits nothing"});
+  expect_warning(scene, {"the object is black", "the light point emits nothing"});
   scene.lights = {point_light({0, 0, 0}, Rgb(1e4))};
-  expect_warning(scene, {"the image is black", "inside a shape"});
+  expect_warning(scene, {"the object is black", "inside a shape"});
   scene.lights = {point_light({0, 0, 1e6}, Rgb(2e4))};
   expect_warning(scene,
                  {"almost black",
@@ -222,7 +222,7 @@ TEST(PictureWarnings, SmallBrightParts) {
   scene.lights = {{"spot", SpotLight{{1, 1, 30}, {0, 0, -1}, Rgb(30000), 2}}};
   EXPECT_TRUE(warnings_of(scene).empty());
   scene.lights = {{"spot", SpotLight{{1, 1, 30}, {0, 0, -1}, Rgb(0.03), 2}}};
-  expect_warning(scene, {"the image is almost black", "--exposure "});
+  expect_warning(scene, {"the object is almost black", "--exposure "});
 }
 
 // Claim: an image that is black for its surfaces says which: a tint or reflectance of 0, or a metal with nothing to show. Source:
@@ -230,14 +230,14 @@ TEST(PictureWarnings, SmallBrightParts) {
 TEST(PictureWarnings, BlackSurfaces) {
   Scene scene = lit_ball();
   scene.media[0].tint = Rgb(0);
-  expect_warning(scene, {"the image is black: the colour of the medium", "is 0"});
+  expect_warning(scene, {"the object is black: the colour of the medium", "is 0"});
   scene = lit_ball();
   scene.shapes[0].medium.reset();
   scene.shapes[0].reflectance = Rgb(0);
-  expect_warning(scene, {"the image is black: the reflectance of", "is 0"});
+  expect_warning(scene, {"the object is black: the reflectance of", "is 0"});
   scene.shapes[0].reflectance = Rgb(1);
   scene.shapes[0].gloss = Gloss{.metalness = 1, .roughness = 0};
-  expect_warning(scene, {"the image is black: ", "is a metal"});
+  expect_warning(scene, {"the object is black: ", "is a metal"});
 }
 
 // Claim: advice for shapes around the camera leads to an image that shows them. Source: the warning itself. Fails if: it is to
