@@ -129,18 +129,21 @@ bool is_too_thin_for_cells(const BodyPlan& group) {
   return group.thickness > 0 && group.thickness < kTooThin * group.smallest_mean_free_path;
 }
 
-// Cell size of volume_diffusion: as set, smaller to resolve the decay of light and thin bodies, and larger to
-// limit memory.
-void choose_cells(const Scene& scene, const World& world, BodyPlan& group,
+// Cell size of volume_diffusion: as set, smaller to resolve the decay of light and thin bodies or if the cells
+// are few, and larger to limit memory.
+void choose_cells(const Scene& scene, const World& world, double fewest, BodyPlan& group,
                   std::vector<std::string>& warnings) {
   constexpr double kAcrossThin = 2, kSmallest = .25;
   constexpr double kOfVarying = .5;    // a cell has one medium, and light blurs detail below a mean free path
   constexpr double kFewestFaces = 60;  // fewest faces of cells, on the surface
+  constexpr double kEasyFaces = .4;    // per sample of `fewest`; if there are fewer, cells are smaller
   const double length = group.smallest_mean_free_path;
   const Medium& medium = scene.media[group.medium];
   group.cell = scene.settings.cell_size * (varies_inside(medium)
                                                ? kOfVarying * short_length_of(scene, world, group)
                                                : std::min(length, kPerFading * shortest_fading(medium)));
+  const double by_default = group.cell * Settings{}.cell_size / scene.settings.cell_size;
+  group.cell *= std::clamp(std::sqrt(group.area / (kEasyFaces * fewest)) / by_default, .5, 1.);
   if (group.thickness > 0)
     group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));
   group.cell = std::min(group.cell, std::sqrt(group.area / kFewestFaces));

@@ -25,7 +25,7 @@ double fewest_samples(std::size_t bodies);
 /// Number of samples: from the settings, or by the medium's mean free path.
 void choose_samples(const Scene& scene, double fewest, BodyPlan& group, std::vector<std::string>& warnings);
 /// Edge of the cells of volume_diffusion.
-void choose_cells(const Scene& scene, const World& world, BodyPlan& group,
+void choose_cells(const Scene& scene, const World& world, double fewest, BodyPlan& group,
                   std::vector<std::string>& warnings);
 /// Divides that edge, after choose_cells: each smaller cube cut by the surface has its samples.
 void choose_cut(const Settings& settings, double fewest, BodyPlan& group, std::vector<std::string>& warnings);

@@ -68,7 +68,7 @@ void VolumeDiffusionMethod::plan(const PlanningInput& input, BodyPlan& body,
     body.method = Method::hierarchical;
     return method_of(body.method).plan(input, body, warnings);
   }
-  choose_cells(input.scene, input.world, body, warnings);
+  choose_cells(input.scene, input.world, input.fewest_samples, body, warnings);
   choose_cut(input.scene.settings, input.fewest_samples, body, warnings);
   warn_of_near_lights(input.scene, input.world, body, warnings);
 }
