@@ -16,6 +16,32 @@ namespace {
 constexpr std::size_t kFactors = 33;
 constexpr double kMostAlbedo = 1 - 1e-9;  // beyond, fractions are 1 to rounding for any boundary
 
+// In the fluence of diffusion, C e^-kz + S e^-pz, of light entering at one cosine, and in a linear one.
+CalibratedMedium::Emission emission_of(double albedo, double eta, double mismatch, const HalfSpace& exact) {
+  constexpr double kOutside = .7;        // cosine of entry, of which the results hardly depend
+  constexpr double kDiffusion = 1. / 3;  // all lengths in mean free paths
+  const double entry = refracted_cosine(kOutside, 1 / eta), decay = std::sqrt(3 * (1 - albedo));
+  const double source = 1 / entry + (std::abs(1 / entry - decay) < 1e-3 ? 2e-3 : 0);
+  const auto emitted = [&](const auto& of_cosine) {
+    const auto along = [&](double outside) {
+      return outside * (1 - fresnel_reflectance(outside, eta)) *
+             of_cosine(refracted_cosine(outside, 1 / eta));
+    };
+    return albedo / (2 * eta * eta) * boost::math::quadrature::gauss<double, 30>::integrate(along, 0., 1.);
+  };
+  const auto of_exponential = [&](double rate) {
+    return emitted([&](double cosine) { return 1 / (1 + rate * cosine); });
+  };
+  const double once = emitted([&](double cosine) { return 1 / (cosine + entry); });
+  const double forced = albedo / entry / (1 - albedo - kDiffusion * source * source);
+  const double leak = 2 * mismatch * kDiffusion;
+  const double free = -forced * (1 + leak * source) / (1 + leak * decay);
+  const double factor = exact.share(entry) * 2 * mismatch / (forced + free);
+  const double more = factor * (free * of_exponential(decay) + forced * of_exponential(source));
+  const double linear = emitted([&](double cosine) { return 1 + cosine / leak; });
+  return {(exact.share(entry) - once) / more, 1 / (2 * mismatch * linear), once / (once + more)};
+}
+
 }  // namespace
 
 CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium)
@@ -41,6 +67,7 @@ CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium)
     factors.push_back(exact.share(cosine) / diffused);
   }
   factors_ = std::make_shared<const std::vector<double>>(std::move(factors));
+  emission = emission_of(used, eta, mismatch, exact);
 }
 
 CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium, const CalibratedMedium& calibrated)
@@ -50,6 +77,7 @@ CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium, const Calibr
       albedo(medium.albedo()),
       diffusion(extinction > 0 ? 1 / (3 * extinction) : 1),
       mismatch(calibrated.mismatch),
+      emission(calibrated.emission),
       least_cosine_(calibrated.least_cosine_),
       factors_(calibrated.factors_) {}
 

@@ -29,6 +29,15 @@ struct CalibratedMedium {
   double diffusion = 1;  ///< D, lengths
   double mismatch = 1;   ///< A of the boundary condition phi + 2 A D dphi/dn = 0
 
+  /// Exitance by light scattered more than once, over the emission of the fluence of diffusion along paths to a
+  /// flat boundary.
+  struct Emission {
+    double lit = 1;         ///< with light entering there
+    double unlit = 1;       ///< with the fluence growing linearly inwards
+    double once_share = 1;  ///< where lit, share of light scattered once in that of both
+  };
+  Emission emission;
+
  private:
   double least_cosine_ = 0;
   std::shared_ptr<const std::vector<double>> factors_;  // at cosines from least_cosine_ to 1, evenly

@@ -92,7 +92,7 @@ Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes
 
 DiffusionBody::DiffusionBody(const World& world, std::span<const std::uint32_t> meshes,
                              std::span<const BoundaryElement> samples, const BodyMedia& media,
-                             const Lattice& lattice)
+                             const Lattice& lattice, bool has_edges)
     : samples_(samples),
       throughout_(media.throughout),
       lattice_(lattice),
@@ -100,6 +100,8 @@ DiffusionBody::DiffusionBody(const World& world, std::span<const std::uint32_t> 
       grid_(make_grid(world, meshes, lattice_, boundary_)) {
   if (media.inside) find_media(media);
   attach();
+  elements_of_ = ElementsOfCells(attached_, grid_.cells().size());
+  if (has_edges) edges_ = std::make_unique<const EdgeExitance>(space());
 }
 
 void DiffusionBody::find_media(const BodyMedia& media) {
@@ -171,18 +173,22 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
     for (std::size_t c = 0; c < 3; ++c) diffusivity.c[c] = float(media[c].diffusion * lattice_.cell);
   }
   FirstCollisions collisions = first_collisions(space(), light, monitor);
+  Solution solution;
+  for (const Channels& source : collisions.source)
+    for (std::size_t c = 0; c < 3; ++c) solution.entered[c] += double(source.c[c]);
   problem.source = std::move(collisions.source);
   std::vector<Channels> rough = solve_diffusion(problem, kRough, std::move(start), monitor).fluence;
   add_oblique_flow(problem, rough);
-  Solution solution{solve_diffusion(problem, kTolerance, std::move(rough), monitor).fluence, {}};
-  solution.exitance = read(solution.fluence, collisions.leaving);
+  solution.fluence = solve_diffusion(problem, kTolerance, std::move(rough), monitor).fluence;
+  solution.uncollided = std::move(collisions.uncollided);
+  read(collisions.at_once, solution);
   return solution;
 }
 
 // Exitance at the samples: fluence under a sample, at the depth of its cell's centre, times the conductance
 // to the outside. Normalized so the samples emit exactly the loss of all cells.
-std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
-                                      std::span<const RgbF> leaving) const {
+void DiffusionBody::read(std::span<const RgbF> at_once, Solution& solution) const {
+  const std::span<const Channels> fluence = solution.fluence;
   struct Plane {
     RgbF value;  // exitance at the element
     std::array<Vec3f, 3> slope{};
@@ -204,30 +210,58 @@ std::vector<RgbF> DiffusionBody::read(std::span<const Channels> fluence,
       }
     }
   });
-  std::vector<RgbF> exitance;
-  exitance.reserve(samples_.size());
-  Rgb lost{}, found{};
+  solution.exitance.reserve(samples_.size());
+  Rgb found{};
   for (std::size_t s = 0; s < samples_.size(); ++s) {
     const std::uint32_t i = boundary_.of_sample[s];
     const Vec3f apart = samples_[s].position - boundary_.elements[i].position;
-    RgbF leaves = leaving[i];
+    RgbF leaves = solution.uncollided[i] + at_once[i];
     for (std::size_t c = 0; c < 3; ++c)
       leaves[c] += std::max(0.f, planes[i].value[c] + dot(planes[i].slope[c], apart));
     found += Rgb(leaves) * double(samples_[s].area);
-    exitance.push_back(leaves);
+    solution.exitance.push_back(leaves);
   }
   for (std::size_t i = 0; i < attached_.size(); ++i) {
     const auto& [cell, depth] = attached_[i];
-    lost += Rgb(leaving[i]) * double(boundary_.elements[i].area);
+    const Rgb direct = Rgb(solution.uncollided[i] + at_once[i]) * double(boundary_.elements[i].area);
+    solution.entered += direct, solution.left += direct;
     if (cell == DiffusionGrid::kNone) continue;
     const std::array<CalibratedMedium, 3>& media = space().media_of(cell);
     for (std::size_t c = 0; c < 3; ++c)
-      lost[c] +=
+      solution.left[c] +=
           double(boundary_.elements[i].area) * double(fluence[cell].c[c]) * media[c].conductance(depth);
   }
-  for (std::size_t c = 0; c < 3; ++c) lost[c] = found[c] > 0 ? lost[c] / found[c] : 0;
-  for (RgbF& leaves : exitance) leaves = RgbF(Rgb(leaves) * lost);
-  return exitance;
+  Rgb factor{};
+  for (std::size_t c = 0; c < 3; ++c) factor[c] = found[c] > 0 ? solution.left[c] / found[c] : 0;
+  for (std::vector<RgbF>* values : {&solution.exitance, &solution.uncollided})
+    for (RgbF& leaves : *values) leaves = RgbF(Rgb(leaves) * factor);
+}
+
+// Of light that leaves near edges, a part would be absorbed otherwise, and the rest leave elsewhere.
+void DiffusionBody::correct_edges(const EnteringLight& light, Solution& solution) const {
+  if (edges_ == nullptr || edges_->samples().empty()) return;
+  std::vector<FluenceInCell> fluence(solution.fluence.size());
+  parallel_chunks(fluence.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i)
+      fluence[i] = {solution.fluence[i], gradient_at(grid_, solution.fluence, std::uint32_t(i))};
+  });
+  const std::vector<EdgeExitance::AtSample> near_edges = edges_->exitance(light, fluence);
+  Rgb more{};
+  for (std::size_t i = 0; i < near_edges.size(); ++i) {
+    const std::uint32_t s = edges_->samples()[i];
+    const RgbF by_diffusion = solution.exitance[s] - solution.uncollided[boundary_.of_sample[s]];
+    const Rgb change = near_edges[i].weight * (near_edges[i].exitance - Rgb(by_diffusion));
+    solution.exitance[s] += RgbF(change);
+    if (getenv("EDGE_DEBUG")) solution.exitance[s] = RgbF(near_edges[i].weight * 1.0);
+    more += change * double(samples_[s].area);
+  }
+  Rgb factor(1);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double kept =
+        solution.entered[c] > 0 ? std::max(0., 1 - solution.left[c] / solution.entered[c]) : 0;
+    if (solution.left[c] > 0) factor[c] = (solution.left[c] + kept * more[c]) / (solution.left[c] + more[c]);
+  }
+  for (RgbF& leaves : solution.exitance) leaves = RgbF(Rgb(leaves) * factor);
 }
 
 std::vector<Channels> DiffusionBody::carried(const Solution& solution, const DiffusionBody& to) const {

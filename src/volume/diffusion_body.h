@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "volume/edge_exitance.h"
 #include "volume/first_collisions.h"
 #include "volume/media_inside.h"
 
@@ -26,17 +28,24 @@ struct BodyMedia {
 /// Cells of one size at the surface. References `samples` and `media`.
 class DiffusionBody {
  public:
-  /// in    samples: elements of this lattice's cells, or of smaller ones dividing them
+  /// in    samples: elements of this lattice's cells, or of smaller ones dividing them; has_edges: for correct_edges
   DiffusionBody(const World& world, std::span<const std::uint32_t> meshes,
-                std::span<const BoundaryElement> samples, const BodyMedia& media, const Lattice& lattice);
+                std::span<const BoundaryElement> samples, const BodyMedia& media, const Lattice& lattice,
+                bool has_edges);
 
   /// Fluence of the cells, and exitance at the samples, W per square of the world's unit.
   struct Solution {
     std::vector<Channels> fluence;
     std::vector<RgbF> exitance;
+    std::vector<RgbF> uncollided;  ///< part of the exitance, by element
+    Rgb entered{}, left{};         ///< light of all cells, W
   };
   /// start: initial guess of the fluence, or empty
   Solution solve(const EnteringLight& light, std::vector<Channels> start, Monitor* monitor) const;
+
+  /// Corrects the exitance near edges.
+  /// light: of this solution
+  void correct_edges(const EnteringLight& light, Solution& solution) const;
 
   /// A solution's fluence at the centres of another body's cells.
   std::vector<Channels> carried(const Solution& solution, const DiffusionBody& to) const;
@@ -46,13 +55,14 @@ class DiffusionBody {
 
  private:
   DiffusionSpace space() const {
-    return {lattice_, grid_, of_cells_.empty() ? throughout_ : of_cells_, boundary_, samples_, attached_};
+    return {lattice_,  grid_,       of_cells_.empty() ? throughout_ : of_cells_, boundary_, samples_,
+            attached_, elements_of_};
   }
   void find_media(const BodyMedia& media);
   void attach();
   std::uint32_t nearest_below(const Vec3f& position, const Vec3f& normal) const;
   std::vector<Channels> losses() const;
-  std::vector<RgbF> read(std::span<const Channels> fluence, std::span<const RgbF> leaving) const;
+  void read(std::span<const RgbF> at_once, Solution& solution) const;
 
   std::span<const BoundaryElement> samples_;
   std::span<const std::array<CalibratedMedium, 3>> throughout_;
@@ -61,6 +71,8 @@ class DiffusionBody {
   DiffusionGrid grid_;
   std::vector<std::array<CalibratedMedium, 3>> of_cells_;  // only in a heterogeneous medium
   std::vector<AttachedElement> attached_;                  // one an element
+  ElementsOfCells elements_of_;
+  std::unique_ptr<const EdgeExitance> edges_;
 };
 
 }  // namespace opaline

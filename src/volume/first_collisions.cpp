@@ -13,11 +13,11 @@
 namespace opaline {
 namespace {
 
-constexpr double kLeastCosine = 1e-3;   // least cosine of light inside, avoiding division by 0 for eta < 1
 constexpr double kSpread = 1.2;         // cells around an exit
 constexpr double kLeastAgreement = .5;  // least agreement of normals of one sheet
-constexpr double kFarthest = 4;         // free paths; longer flights end there
-constexpr double kStep = .4;            // cells
+constexpr int kMostReflections = 4;
+constexpr double kLeastReflected = .05;  // of the flux at the first exit
+constexpr double kFarthest = 4;          // free paths; longer flights end there
 
 // Additive recurrence with the golden ratio in [0, 1).
 double golden_point(std::size_t i) {
@@ -25,36 +25,16 @@ double golden_point(std::size_t i) {
   return turns - std::floor(turns);
 }
 
-/// The boundary elements of each cell.
-class ElementsOfCells {
- public:
-  ElementsOfCells(std::span<const AttachedElement> attached, std::size_t cells) : first_(cells + 1) {
-    for (const AttachedElement& at : attached)
-      if (at.cell != DiffusionGrid::kNone) ++first_[at.cell + 1];
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    elements_.resize(first_.back());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (std::uint32_t i = 0; i < attached.size(); ++i)
-      if (attached[i].cell != DiffusionGrid::kNone) elements_[next[attached[i].cell]++] = i;
-  }
-  std::span<const std::uint32_t> of(std::uint32_t cell) const {
-    return std::span(elements_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
-  }
-
- private:
-  std::vector<std::uint32_t> first_, elements_;
-};
-
 class Depositor {
  public:
-  Depositor(const DiffusionSpace& space, const ElementsOfCells& elements_of)
-      : space_(space), elements_of_(elements_of) {
+  explicit Depositor(const DiffusionSpace& space) : space_(space), paths_(space) {
     result_.source.resize(space.grid.cells().size());
-    result_.leaving.resize(space.boundary.elements.size());
+    result_.uncollided.resize(space.boundary.elements.size());
+    result_.at_once.resize(space.boundary.elements.size());
     for (const std::array<CalibratedMedium, 3>& media : space.media)
       for (const CalibratedMedium& medium : media)
         if (medium.albedo > 0) longest_ = std::max(longest_, 1 / medium.extinction);
-    if (!space.varies()) step_ = stretch_of(kStep * space.lattice.cell, 0);
+    if (!space.varies()) step_ = stretch_of(BodyPaths::kStep * space.lattice.cell, 0);
   }
 
   /// entering: W
@@ -62,19 +42,7 @@ class Depositor {
   FirstCollisions take() { return std::move(result_); }
 
  private:
-  /// Straight path inside the body, in lattice units; lengths in world units.
-  struct Way {
-    Vec3d from, along;
-  };
-  /// Exit of a path from the body.
-  struct Exit {
-    double length;
-    std::uint32_t element;  // nearest boundary element
-    std::uint32_t cell;     // last cell
-  };
-  Vec3d at(const Way& way, double length) const {
-    return way.from + way.along * (length / space_.lattice.cell);
-  }
+  using Exit = BodyPaths::Exit;
   /// Segment of a path within a cell, per channel: fraction of the arriving flux colliding in it, and mean
   /// distance of collisions.
   struct Stretch {
@@ -84,8 +52,6 @@ class Depositor {
   // Scattered fraction of a collision. In a homogeneous medium, absorption is applied at the entry instead.
   double scattered_of(const CalibratedMedium& medium) const { return space_.varies() ? medium.albedo : 1; }
   Stretch stretch_of(double length, std::uint32_t cell) const;
-  std::optional<Exit> exit_at(const Way& way, double length, double least, std::uint32_t last,
-                              std::uint32_t next) const;
   std::optional<Exit> collide(const Way& way, double start, std::uint32_t first, Rgb& flux);
   /// Collisions of the three channels at separate, close positions.
   struct Collided {
@@ -96,17 +62,18 @@ class Depositor {
   void deposit(const Vec3d& place, std::uint32_t fallback, std::size_t channel, double flux);
   void deposit(const Way& way, double start, const Stretch& stretch, std::uint32_t fallback, Rgb& flux);
   void spread(const Vec3d& at, const Exit& exit);
-  void leave(const Way& way, const Exit& exit, std::size_t i, const Rgb& flux);
+  void leave(Way way, Exit exit, std::size_t i, Rgb flux);
 
   const DiffusionSpace& space_;
-  const ElementsOfCells& elements_of_;
+  BodyPaths paths_;
   struct Share {
     std::uint32_t element;
     double per_area;
   };
-  std::vector<Share> spread_;  // spread of the current exit
-  double longest_ = 0;         // free path
-  Stretch step_;               // smallest cells, in a homogeneous medium
+  std::vector<Share> spread_;          // of the current exit
+  std::vector<std::uint32_t> around_;  // cells around it
+  double longest_ = 0;                 // free path
+  Stretch step_;                       // smallest cells, in a homogeneous medium
   FirstCollisions result_;
 };
 
@@ -123,57 +90,18 @@ Depositor::Stretch Depositor::stretch_of(double length, std::uint32_t cell) cons
   return stretch;
 }
 
-// Exit through the plane of the nearest boundary element, if the path leaves the body between `least`, in the
-// cell `last`, and `length`: if there is no cell at `length` (`next` is none), or if it is behind an
-// element's plane in `next`.
-std::optional<Depositor::Exit> Depositor::exit_at(const Way& way, double length, double least,
-                                                  std::uint32_t last, std::uint32_t next) const {
-  const double cell = space_.lattice.cell;
-  const Vec3d end = at(way, length);
-  const bool has_left = next == DiffusionGrid::kNone;
-  Exit exit{length, ~0u, has_left ? last : next};
-  const Vec3d about = has_left ? end - way.along * (.5 * kStep) : end;
-  double nearest = INFINITY;
-  for (const std::uint32_t e : elements_of_.of(exit.cell)) {
-    const BoundaryElement& element = space_.boundary.elements[e];
-    const Vec3d apart = about - space_.in_lattice(element.position), normal(element.normal);
-    if (!(dot(way.along, normal) > 0) || dot(apart, apart) >= nearest) continue;
-    if (!has_left && !(dot(apart, normal) > 0)) continue;
-    nearest = dot(apart, apart);
-    exit.element = e;
-  }
-  if (exit.element == ~0u) return {};
-  const BoundaryElement& element = space_.boundary.elements[exit.element];
-  const Vec3d normal(element.normal);
-  exit.length = dot(space_.in_lattice(element.position) - way.from, normal) /
-                std::max(kLeastCosine, dot(way.along, normal)) * cell;
-  exit.length = std::clamp(exit.length, least, std::max(least, length + cell));
-  return exit;
-}
-
-// Deposits the collisions along a path from `start`, by steps below a cell, or about the edge of larger
-// cells, which lie deeper. Returns the exit, with the remaining flux in `flux`.
+// Deposits the collisions along a path from `start`. Returns the exit, with the remaining flux in `flux`.
 std::optional<Depositor::Exit> Depositor::collide(const Way& way, double start, std::uint32_t first,
                                                   Rgb& flux) {
   const double farthest = start + kFarthest * longest_;
-  std::uint32_t last = first;
-  for (double length = start; length < farthest;) {
-    const double edge = std::max(kStep, double(space_.grid.cells()[last].size) - 1);
-    const double step = edge * space_.lattice.cell;
-    const std::uint32_t next = space_.grid.at(Vec3f(at(way, length + step)));
-    const std::optional<Exit> exit = exit_at(way, length + step, length, last, next);
-    if (exit) {
-      deposit(way, length, stretch_of(exit->length - length, last), last, flux);
-      return exit;
-    }
-    if (next == DiffusionGrid::kNone) break;
-    deposit(way, length, edge > kStep || space_.varies() ? stretch_of(step, last) : step_, last, flux);
-    length += step;
-    last = next;
-  }
+  const BodyPaths::End end =
+      paths_.follow(way, start, farthest, first, [&](double length, double step, std::uint32_t cell) {
+        deposit(way, length, step == step_.length ? step_ : stretch_of(step, cell), cell, flux);
+      });
+  if (end.exit) return end.exit;
   for (std::size_t c = 0; c < 3; ++c)
-    if (const CalibratedMedium& medium = space_.media_of(last)[c]; flux[c] > 0)
-      deposit(at(way, farthest + 1 / medium.extinction), last, c, flux[c] * scattered_of(medium));
+    if (const CalibratedMedium& medium = space_.media_of(end.cell)[c]; flux[c] > 0)
+      deposit(paths_.at(way, farthest + 1 / medium.extinction), end.cell, c, flux[c] * scattered_of(medium));
   flux = {};
   return {};
 }
@@ -183,12 +111,12 @@ void Depositor::deposit(const Way& way, double start, const Stretch& stretch, st
                         Rgb& flux) {
   Collided collided;
   for (std::size_t c = 0; c < 3; ++c) {
-    collided.places[c] = at(way, start + stretch.middle[c]);
+    collided.places[c] = paths_.at(way, start + stretch.middle[c]);
     collided.flux[c] = flux[c] * stretch.share[c];
     flux[c] -= collided.flux[c];
     collided.flux[c] *= stretch.scattered[c];
   }
-  deposit(collided, at(way, start + .5 * stretch.length), fallback);
+  deposit(collided, paths_.at(way, start + .5 * stretch.length), fallback);
 }
 
 // Deposits by linear interpolation between the cell at a position and its neighbours on the nearer sides.
@@ -232,7 +160,7 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
   const Vec3f normal = space_.boundary.elements[exit.element].normal;
   double sum = 0;
   const auto add = [&](std::uint32_t cell) {
-    for (const std::uint32_t e : elements_of_.of(cell)) {
+    for (const std::uint32_t e : space_.elements_of.of(cell)) {
       const BoundaryElement& element = space_.boundary.elements[e];
       const Vec3d apart = space_.in_lattice(element.position) - at;
       const double near = 1 - dot(apart, apart) / (kSpread * kSpread);
@@ -241,8 +169,16 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
       sum += near * double(element.area);
     }
   };
-  add(exit.cell);
-  for (const DiffusionGrid::Link& link : space_.grid.links(exit.cell)) add(link.to);
+  const Vec3f below = Vec3f(at) - normal * .35f;
+  around_.clear();
+  for (const float x : {-1.f, 0.f, 1.f})
+    for (const float y : {-1.f, 0.f, 1.f})
+      for (const float z : {-1.f, 0.f, 1.f})
+        if (const std::uint32_t cell = space_.grid.at(below + Vec3f(x, y, z));
+            cell != DiffusionGrid::kNone && std::ranges::find(around_, cell) == around_.end()) {
+          around_.push_back(cell);
+          add(cell);
+        }
   if (spread_.empty()) {
     spread_.push_back({exit.element, 1});
     sum = double(space_.boundary.elements[exit.element].area);
@@ -250,21 +186,33 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
   for (Share& share : spread_) share.per_area /= sum;
 }
 
-// Splits the flux at an exit: the transmitted part leaves; the reflected part collides on its further path,
-// assumed to be inside.
-void Depositor::leave(const Way& way, const Exit& exit, std::size_t i, const Rgb& flux) {
-  const Vec3d normal(space_.boundary.elements[exit.element].normal), place = at(way, exit.length);
-  const double reflectance =
-      inside_reflectance(std::clamp(dot(way.along, normal), kLeastCosine, 1.), space_.eta());
-  spread(place, exit);
-  for (const auto& [element, per_area] : spread_)
-    result_.leaving[element] += RgbF(flux * ((1 - reflectance) * per_area));
-  const Way back{place, mirrored(way.along, normal)};
-  for (std::size_t c = 0; c < 3; ++c) {
-    if (!(flux[c] > 0)) continue;
-    const CalibratedMedium& medium = space_.media_of(exit.cell)[c];
-    const double collided = -std::log1p(-golden_point(i)) / medium.extinction;
-    deposit(at(back, collided), exit.cell, c, flux[c] * reflectance * medium.albedo);
+// Splits the flux at an exit: the transmitted part leaves; the reflected part collides on its further path, or reaches
+// the surface again.
+void Depositor::leave(Way way, Exit exit, std::size_t i, Rgb flux) {
+  const double least = kLeastReflected * max_component(flux);
+  for (int reflections = 1;; ++reflections) {
+    const Vec3d normal(space_.boundary.elements[exit.element].normal), place = paths_.at(way, exit.length);
+    const double reflectance =
+        inside_reflectance(std::clamp(dot(way.along, normal), BodyPaths::kLeastCosine, 1.), space_.eta());
+    spread(place, exit);
+    for (const auto& [element, per_area] : spread_)
+      result_.uncollided[element] += RgbF(flux * ((1 - reflectance) * per_area));
+    flux *= reflectance;
+    way = {place, mirrored(way.along, normal)};
+    const std::array<CalibratedMedium, 3>& media = space_.media_of(exit.cell);
+    Rgb colliding{};
+    for (std::size_t c = 0; c < 3; ++c) colliding[c] = flux[c] * (space_.varies() ? 1 : media[c].albedo);
+    if (max_component(flux) < least || reflections == kMostReflections) {
+      for (std::size_t c = 0; c < 3; ++c)
+        deposit(paths_.at(way, -std::log1p(-golden_point(i)) / media[c].extinction), exit.cell, c,
+                flux[c] * media[c].albedo);
+      return;
+    }
+    const std::optional<Exit> next = collide(way, 0, exit.cell, colliding);
+    if (!next) return;
+    for (std::size_t c = 0; c < 3; ++c)
+      flux[c] = space_.varies() ? colliding[c] : flux[c] * std::exp(-next->length * media[c].extinction);
+    exit = *next;
   }
 }
 
@@ -276,7 +224,7 @@ void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) 
   const std::array<CalibratedMedium, 3>& media = space_.media_of(attached.cell);
   const Vec3d normal(element.normal);
   const Vec3d inward = refracted_inward(-outward, normal, space_.eta());
-  const double cosine = std::max(kLeastCosine, -dot(inward, normal)), depth = attached.depth;
+  const double cosine = std::max(BodyPaths::kLeastCosine, -dot(inward, normal)), depth = attached.depth;
   const double path = depth / cosine;
   const Way way{space_.in_lattice(element.position), inward};
   Rgb colliding{}, factors(1);
@@ -289,7 +237,7 @@ void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) 
     const double passed = std::exp(-path / free_path);
     const double at_once =
         (depth - cosine * free_path * (1 - passed)) / (2 * medium.mismatch * medium.diffusion + depth);
-    result_.leaving[i][c] += float(enters * at_once / double(element.area));
+    result_.at_once[i][c] += float(enters * at_once / double(element.area));
     result_.source[attached.cell].c[c] += float(enters * (1 - passed - at_once));
     colliding[c] = (space_.varies() ? entering[c] * factors[c] : enters) * passed;
   }
@@ -316,12 +264,9 @@ std::vector<Rgb> entering_flux(const DiffusionSpace& space, const OfSample& ente
 class EntryInParts {
  public:
   EntryInParts(const DiffusionSpace& space, Monitor* monitor)
-      : space_(space), monitor_(monitor), elements_of_(space.attached, space.grid.cells().size()) {
-    for (std::size_t part = 0; part < kParts; ++part) parts_.emplace_back(space, elements_of_);
-  }
+      : space_(space), monitor_(monitor), parts_(kParts, Depositor(space)) {}
 
-  /// in    flux: one per element; directions: of an element, by its index
-  template <class DirectionsOf>
+  /// in    flux: one per element
   void enter(std::span<const Rgb> flux, const DirectionsOf& directions) {
     const std::size_t of_part = (flux.size() + kParts - 1) / kParts;
     parallel_chunks(flux.size(), of_part, [&](std::size_t begin, std::size_t end, std::size_t part) {
@@ -339,7 +284,10 @@ class EntryInParts {
     for (Depositor& part : std::span(parts_).subspan(1)) {
       const FirstCollisions more = part.take();
       for (std::size_t i = 0; i < sum.source.size(); ++i) sum.source[i].c += more.source[i].c;
-      for (std::size_t i = 0; i < sum.leaving.size(); ++i) sum.leaving[i] += more.leaving[i];
+      for (std::size_t i = 0; i < sum.at_once.size(); ++i) {
+        sum.uncollided[i] += more.uncollided[i];
+        sum.at_once[i] += more.at_once[i];
+      }
     }
     return sum;
   }
@@ -349,32 +297,41 @@ class EntryInParts {
 
   const DiffusionSpace& space_;
   Monitor* monitor_;
-  ElementsOfCells elements_of_;
   std::vector<Depositor> parts_;
 };
 
 }  // namespace
 
-FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor) {
-  EntryInParts entry(space, monitor);
+void for_each_source(const DiffusionSpace& space, const EnteringLight& light,
+                     const std::function<void(std::vector<Rgb>, const DirectionsOf&)>& visit) {
   const std::vector<BoundaryElement>& elements = space.boundary.elements;
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
-    const std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) {
+    std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) {
       const Rgb tint = light.tints.empty() ? Rgb(1) : Rgb(light.tints[s]);
       return emission(light.lights[l]) * tint *
              (double(space.samples[s].area) * double(light.transfers[l].weights[s]));
     });
-    entry.enter(flux,
-                [&](std::size_t i) { return towards_light(light.lights[l], elements[i], space.eta(), i); });
+    visit(std::move(flux), [&space, &elements, &one = light.lights[l]](std::size_t i) {
+      return towards_light(one, elements[i], space.eta(), i);
+    });
   }
-  if (light.even.empty()) return entry.take();
+  if (light.even.empty()) return;
   const std::vector<Rgb> flux =
       entering_flux(space, [&](std::size_t s) { return Rgb(light.even[s]) * double(space.samples[s].area); });
   Rgb beside{};
   for (std::size_t s = 0; s < light.beside.size(); ++s)
     beside += Rgb(light.beside[s]) * double(space.samples[s].area);
   const EvenDirections even(flux, beside);
-  entry.enter(flux, [&](std::size_t i) { return even.at(elements[i], space.eta(), flux[i], i); });
+  visit(flux, [&space, &elements, even, flux](std::size_t i) {
+    return even.at(elements[i], space.eta(), flux[i], i);
+  });
+}
+
+FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor) {
+  EntryInParts entry(space, monitor);
+  for_each_source(space, light, [&](const std::vector<Rgb>& flux, const DirectionsOf& directions) {
+    entry.enter(flux, directions);
+  });
   return entry.take();
 }
 

@@ -4,15 +4,15 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "irradiance/irradiance.h"
 #include "opaline/monitor.h"
-#include "volume/boundary_elements.h"
-#include "volume/calibrated_medium.h"
-#include "volume/diffusion_grid.h"
+#include "volume/body_paths.h"
 #include "volume/diffusion_solver.h"
+#include "volume/entry_directions.h"
 
 namespace opaline {
 
@@ -25,34 +25,18 @@ struct EnteringLight {
   std::span<const RgbF> beside = {};  ///< exitance by other light, which hides noise of `even`; may be empty
 };
 
-/// A boundary element's cell.
-struct AttachedElement {
-  std::uint32_t cell = DiffusionGrid::kNone;
-  double depth = 0;  ///< depth of the cell's centre under it, world units
-};
-
-/// A body's cells and boundary.
-struct DiffusionSpace {
-  const Lattice& lattice;
-  const DiffusionGrid& grid;
-  std::span<const std::array<CalibratedMedium, 3>> media;  ///< one for all cells, or one per cell
-  const Boundary& boundary;
-  std::span<const BoundaryElement> samples;
-  std::span<const AttachedElement> attached;  ///< one an element
-
-  bool varies() const { return media.size() > 1; }
-  const std::array<CalibratedMedium, 3>& media_of(std::size_t cell) const {
-    return media[varies() ? cell : 0];
-  }
-  double eta() const { return media[0][0].eta; }
-  Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }
-};
-
-/// Flux by cell, and uncollided or immediately leaving exitance by element.
+/// Flux by cell, and exitance by element.
 struct FirstCollisions {
   std::vector<Channels> source;
-  std::vector<RgbF> leaving;
+  std::vector<RgbF> uncollided;  ///< light that crosses the body
+  std::vector<RgbF> at_once;     ///< light that leaves where it collides, too close to the surface for cells
 };
+
+/// Directions of the light that enters at an element, by its index.
+using DirectionsOf = std::function<EntryDirections(std::size_t)>;
+/// Calls visit(flux, directions) for each light and for uniform light; flux: transmitted at each element, W.
+void for_each_source(const DiffusionSpace& space, const EnteringLight& light,
+                     const std::function<void(std::vector<Rgb>, const DirectionsOf&)>& visit);
 
 /// Advances by one an element and source of light, of sources_of.
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor);

@@ -41,8 +41,8 @@ struct VolumeDiffusion::State {
       : media(calibrated(input)),
         samples(elements_of(input)),
         lattice(lattice_around(input.world, input.meshes, input.cell)),
-        fine(input.world, input.meshes, samples, media, lattice),
-        coarse(input.world, input.meshes, samples, media, doubled(lattice)) {}
+        fine(input.world, input.meshes, samples, media, lattice, true),
+        coarse(input.world, input.meshes, samples, media, doubled(lattice), false) {}
 
   VolumeExitance exitance(const EnteringLight& light, Monitor* monitor) const;
 
@@ -116,13 +116,14 @@ VolumeExitance VolumeDiffusion::State::exitance(const EnteringLight& light, Moni
   if (monitor != nullptr) monitor->begin("diffusion", 2 * elements * sources_of(light));
   const DiffusionBody::Solution rough = coarse.solve(light, {}, monitor);
   advance(monitor, coarse.elements() * sources_of(light));
-  const DiffusionBody::Solution solution = fine.solve(light, coarse.carried(rough, fine), monitor);
+  DiffusionBody::Solution solution = fine.solve(light, coarse.carried(rough, fine), monitor);
   VolumeExitance result;
-  result.exitance = solution.exitance;
   for (const RgbF& before : rough.exitance) {
-    const RgbF change = result.exitance[result.error.size()] - before;
+    const RgbF change = solution.exitance[result.error.size()] - before;
     result.error.push_back(RgbF(std::abs(change.x), std::abs(change.y), std::abs(change.z)) * kLeft);
   }
+  fine.correct_edges(light, solution);
+  result.exitance = std::move(solution.exitance);
   return result;
 }
 

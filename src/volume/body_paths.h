@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Straight paths through the cells of a body, to its surface.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "volume/boundary_elements.h"
+#include "volume/calibrated_medium.h"
+#include "volume/diffusion_grid.h"
+
+namespace opaline {
+
+/// A boundary element's cell.
+struct AttachedElement {
+  std::uint32_t cell = DiffusionGrid::kNone;
+  double depth = 0;  ///< depth of the cell's centre under it, world units
+};
+
+/// The boundary elements of each cell.
+class ElementsOfCells {
+ public:
+  ElementsOfCells() = default;
+  ElementsOfCells(std::span<const AttachedElement> attached, std::size_t cells);
+  std::span<const std::uint32_t> of(std::uint32_t cell) const {
+    return std::span(elements_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+  }
+
+ private:
+  std::vector<std::uint32_t> first_, elements_;
+};
+
+/// A body's cells and boundary.
+struct DiffusionSpace {
+  const Lattice& lattice;
+  const DiffusionGrid& grid;
+  std::span<const std::array<CalibratedMedium, 3>> media;  ///< one for all cells, or one per cell
+  const Boundary& boundary;
+  std::span<const BoundaryElement> samples;
+  std::span<const AttachedElement> attached;  ///< one an element
+  const ElementsOfCells& elements_of;
+
+  bool varies() const { return media.size() > 1; }
+  const std::array<CalibratedMedium, 3>& media_of(std::size_t cell) const {
+    return media[varies() ? cell : 0];
+  }
+  double eta() const { return media[0][0].eta; }
+  Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }
+};
+
+/// Straight path inside a body: an origin, in lattice units, and a unit direction. Lengths: world units.
+struct Way {
+  Vec3d from, along;
+};
+
+class BodyPaths {
+ public:
+  static constexpr double kStep = .4;           // cells
+  static constexpr double kLeastCosine = 1e-3;  // avoids division by 0 at grazing exits
+
+  explicit BodyPaths(const DiffusionSpace& space) : space_(space) {}
+
+  struct Exit {
+    double length;
+    std::uint32_t element;  ///< nearest boundary element
+    std::uint32_t cell;     ///< last cell
+  };
+  /// End of a path: at the surface, or without an exit found.
+  struct End {
+    std::optional<Exit> exit;
+    std::uint32_t cell;  ///< last cell
+  };
+
+  Vec3d at(const Way& way, double length) const {
+    return way.from + way.along * (length / space_.lattice.cell);
+  }
+
+  /// Follows a path by steps below a cell, or about the edge of larger cells, which lie deeper.
+  /// in    cell: at the start; visit(start, step, cell): called for each step
+  template <class Visit>
+  End follow(const Way& way, double start, double farthest, std::uint32_t cell, const Visit& visit) const {
+    for (double length = start; length < farthest;) {
+      const double edge = std::max(kStep, double(space_.grid.cells()[cell].size) - 1);
+      const double step = edge * space_.lattice.cell;
+      const std::uint32_t next = space_.grid.at(Vec3f(at(way, length + step)));
+      if (const std::optional<Exit> exit = exit_at(way, length + step, length, cell, next)) {
+        visit(length, exit->length - length, cell);
+        return {exit, cell};
+      }
+      if (next == DiffusionGrid::kNone) break;
+      visit(length, step, cell);
+      length += step;
+      cell = next;
+    }
+    return {{}, cell};
+  }
+
+ private:
+  std::optional<Exit> exit_at(const Way& way, double length, double least, std::uint32_t last,
+                              std::uint32_t next) const;
+
+  const DiffusionSpace& space_;
+};
+
+}  // namespace opaline

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volume/edge_exitance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.h"
+#include "transport/smooth_boundary.h"
+
+namespace opaline {
+namespace {
+
+constexpr double kFarthest = 4;     // mean free paths
+constexpr double kSameSheet = .9;   // least agreement of normals of one sheet
+constexpr double kWeight = 15;      // per fraction of light from another part of the surface
+constexpr double kLeastLeft = .02;  // of a path, to be followed
+constexpr double kLeastReflected = .05;
+constexpr double kLeastWeight = .05;
+constexpr double kOfThin = 4;  // subtracted, per share of light from an opposite sheet
+constexpr int kLegs = 3;       // between reflections at the surface
+constexpr std::size_t kPaths = 12, kOfRing = 6;
+constexpr double kOfNode = .5;  // of the light of a path, sum of the channels, at one place
+
+/// Direction outside, with the probability of its cosine: in rings.
+Vec3d outside_direction(std::size_t i, std::size_t of_ring, const Vec3d& x, const Vec3d& y,
+                        const Vec3d& normal) {
+  const std::size_t rings = kPaths / of_ring, ring = i / of_ring;
+  const double square = (double(ring) + .5) / double(rings), sine = std::sqrt(square);
+  const double angle = 2 * std::numbers::pi * (double(i % of_ring) + .5) / double(of_ring);
+  return x * (sine * std::cos(angle)) + y * (sine * std::sin(angle)) + normal * std::sqrt(1 - square);
+}
+
+}  // namespace
+
+EdgeExitance::EdgeExitance(const DiffusionSpace& space) : space_(space), paths_(space_) {
+  for (const std::array<CalibratedMedium, 3>& media : space.media)
+    for (const CalibratedMedium& medium : media)
+      if (medium.albedo > 0) longest_ = std::max(longest_, 1 / medium.extinction);
+  if (!space.varies()) {
+    step_ = BodyPaths::kStep * space.lattice.cell;
+    absorbed_ = absorbed_in(step_, 0);
+  }
+  std::vector<char> is_near(space.samples.size());
+  parallel_chunks(is_near.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t s = begin; s < end; ++s) is_near[s] = is_near_other_surface(s) ? 1 : 0;
+  });
+  for (std::size_t s = 0; s < is_near.size(); ++s)
+    if (is_near[s] != 0) samples_.push_back(std::uint32_t(s));
+}
+
+// Quick: along the flattest paths.
+bool EdgeExitance::is_near_other_surface(std::size_t sample) const {
+  if (cell_of(sample) == DiffusionGrid::kNone) return false;
+  const BoundaryElement& from = space_.samples[sample];
+  const Vec3d normal(from.normal);
+  Vec3d x, y;
+  tangent_frame(normal, x, y);
+  for (std::size_t k = kPaths - kOfRing; k < kPaths; ++k) {
+    const Vec3d outward = outside_direction(k, kOfRing, x, y, normal);
+    const Way way{space_.in_lattice(from.position), refracted_inward(-outward, normal, space_.eta())};
+    const BodyPaths::End end =
+        paths_.follow(way, 0, kFarthest * longest_, cell_of(sample), [](double, double, std::uint32_t) {});
+    if (end.exit && std::abs(agreement(from, end.exit->element)) < kSameSheet) return true;
+  }
+  return false;
+}
+
+Rgb EdgeExitance::absorbed_in(double step, std::uint32_t cell) const {
+  Rgb share{};
+  for (std::size_t c = 0; c < 3; ++c) share[c] = -std::expm1(-space_.media_of(cell)[c].extinction * step);
+  return share;
+}
+
+void EdgeExitance::add_sheet(std::uint32_t element, Paths& paths) const {
+  constexpr std::size_t kMost = 4;
+  if (paths.sheets.size() == kMost) return;
+  for (const std::uint32_t other : paths.sheets)
+    if (dot(space_.boundary.elements[other].normal, space_.boundary.elements[element].normal) > kSameSheet)
+      return;
+  paths.sheets.push_back(element);
+}
+
+// Paths inwards, reflected where they meet the surface.
+void EdgeExitance::follow(std::size_t sample, Paths& paths) const {
+  const BoundaryElement& from = space_.samples[sample];
+  paths.nodes.clear();
+  paths.sheets.assign(1, element_of(sample));
+  paths.beside = paths.opposite = {};
+  const Vec3d normal(from.normal);
+  Vec3d x, y;
+  tangent_frame(normal, x, y);
+  double all = 0;
+  for (std::size_t k = 0; k < kPaths; ++k) {
+    const Vec3d outward = outside_direction(k, kOfRing, x, y, normal);
+    const double weight = (1 - fresnel_reflectance(dot(outward, normal), space_.eta())) / double(kPaths);
+    all += weight;
+    Rgb left(weight);
+    Way way{space_.in_lattice(from.position), refracted_inward(-outward, normal, space_.eta())};
+    std::uint32_t cell = cell_of(sample);
+    for (int leg = 0; leg < kLegs && max_component(left) > kLeastLeft * weight; ++leg) {
+      Rgb emitted{};
+      double middle = 0;
+      const auto add = [&](const Rgb& share, double length) {
+        emitted += share;
+        middle += length * (share.x + share.y + share.z);
+      };
+      const auto end_node = [&](std::uint32_t at) {
+        const double sum = emitted.x + emitted.y + emitted.z;
+        if (sum > 0) paths.nodes.push_back({paths_.at(way, middle / sum), at, emitted});
+        emitted = {}, middle = 0;
+      };
+      const auto emit = [&](double start, double step, std::uint32_t at) {
+        const Rgb share = left * (step == step_ ? absorbed_ : absorbed_in(step, at));
+        left -= share;
+        add(share, start + .5 * step);
+        if (emitted.x + emitted.y + emitted.z > kOfNode * weight) end_node(at);
+      };
+      const BodyPaths::End end = paths_.follow(way, 0, kFarthest * longest_, cell, emit);
+      if (!end.exit) add(left, kFarthest * longest_);
+      end_node(end.cell);
+      if (!end.exit) break;
+      const float agreement_there = agreement(from, end.exit->element);
+      if (leg == 0 && agreement_there < kSameSheet)
+        (agreement_there > -kSameSheet ? paths.beside : paths.opposite) += left;
+      add_sheet(end.exit->element, paths);
+      const Vec3d other(space_.boundary.elements[end.exit->element].normal);
+      const double cosine = std::clamp(dot(way.along, other), BodyPaths::kLeastCosine, 1.);
+      left *= inside_reflectance(cosine, space_.eta());
+      way = {paths_.at(way, end.exit->length), mirrored(way.along, other)};
+      cell = end.exit->cell;
+    }
+  }
+  paths.beside = paths.beside / all;
+  paths.opposite = paths.opposite / all;
+}
+
+// Place where light that reaches a position came through a sheet: by the plane of its element, and by that of the element
+// found there.
+EdgeExitance::Entry EdgeExitance::back_to_sheet(const Vec3d& position, const Vec3d& along,
+                                                std::uint32_t sheet) const {
+  const Vec3d sheet_normal(space_.boundary.elements[sheet].normal);
+  std::uint32_t element = sheet;
+  double length = 0;
+  for (int i = 0; i < 2; ++i) {
+    const BoundaryElement& plane = space_.boundary.elements[element];
+    const Vec3d normal(plane.normal);
+    length = std::max(0., dot(space_.in_lattice(plane.position) - position, normal) /
+                              std::max(BodyPaths::kLeastCosine, -dot(along, normal)));
+    const Vec3d entry = position - along * length;
+    const std::uint32_t before = element;
+    double nearest = INFINITY;
+    for (const double below : {.05, .35, .7}) {  // cells; as elements are attached
+      const std::uint32_t cell = space_.grid.at(Vec3f(entry - normal * below));
+      if (cell == DiffusionGrid::kNone) continue;
+      for (const std::uint32_t e : space_.elements_of.of(cell)) {
+        const BoundaryElement& other = space_.boundary.elements[e];
+        const Vec3d apart = space_.in_lattice(other.position) - entry, other_normal(other.normal);
+        if (dot(other_normal, sheet_normal) < kSameSheet) {
+          if (dot(apart, normal) < 0 && dot(apart, other_normal) < 0) return {};  // beyond an edge
+          continue;
+        }
+        if (dot(apart, apart) >= nearest) continue;
+        nearest = dot(apart, apart);
+        element = e;
+      }
+      if (std::isfinite(nearest)) break;
+    }
+    if (!std::isfinite(nearest)) return {};
+    if (element == before) break;
+  }
+  return {length * space_.lattice.cell, element};
+}
+
+EdgeExitance::Entry EdgeExitance::entry_of(const Beam& beam, const Vec3d& position) const {
+  if (beam.mirror == DiffusionGrid::kNone) return back_to_sheet(position, beam.along, beam.element);
+  const Vec3d normal(space_.boundary.elements[beam.mirror].normal), along = mirrored(beam.along, normal);
+  const Entry turn = back_to_sheet(position, along, beam.mirror);
+  if (turn.element == DiffusionGrid::kNone) return {};
+  const Vec3d at = position - along * (turn.length / space_.lattice.cell);
+  const Entry entry = back_to_sheet(at, beam.along, beam.element);
+  return {turn.length + entry.length, entry.element};
+}
+
+// Beams through each sheet, and those reflected at each other one.
+std::vector<std::vector<EdgeExitance::Beam>> EdgeExitance::beams_of(const Paths& paths,
+                                                                    const Source& source) const {
+  std::vector<std::vector<Beam>> beams;
+  for (const std::uint32_t sheet : paths.sheets) {
+    const Vec3d normal(space_.boundary.elements[sheet].normal);
+    const EntryDirections directions = source.directions(sheet);
+    const auto count = double(directions.all().size());  // each node has one of them
+    std::vector<Beam>& direct = beams.emplace_back();
+    for (const EntryDirection& from : directions.all())
+      direct.push_back(
+          {refracted_inward(-Vec3d(from.outward), normal, space_.eta()), sheet, from.share * count});
+    for (const std::uint32_t other : paths.sheets) {
+      if (other == sheet) continue;
+      std::vector<Beam> reflected = beams.back();
+      double most = 0;
+      for (Beam& beam : reflected) {
+        const double cosine = dot(beam.along, Vec3d(space_.boundary.elements[other].normal));
+        beam.share *= cosine > 0 ? inside_reflectance(cosine, space_.eta()) : 0;
+        beam.mirror = other;
+        most = std::max(most, beam.share);
+      }
+      if (most > kLeastReflected) beams.insert(beams.end() - 1, std::move(reflected));
+    }
+  }
+  return beams;
+}
+
+// Sum over the paths of the first collisions there.
+Rgb EdgeExitance::scattered_once(const Paths& paths, const Source& source) const {
+  Rgb sum{};
+  for (const std::vector<Beam>& beams : beams_of(paths, source)) {
+    std::size_t next = 0;
+    for (const Node& node : paths.nodes) {
+      const Beam& beam = beams[next++ % beams.size()];
+      if (!(beam.share > 0)) continue;
+      const auto [length, element] = entry_of(beam, node.position);
+      if (element == DiffusionGrid::kNone) continue;
+      const BoundaryElement& entry = space_.boundary.elements[element];
+      const double cosine = std::max(BodyPaths::kLeastCosine, -dot(beam.along, Vec3d(entry.normal)));
+      const Rgb arriving = source.flux[element] * (beam.share / (double(entry.area) * cosine));
+      for (std::size_t c = 0; c < 3; ++c) {
+        const CalibratedMedium& medium = space_.media_of(node.cell)[c];
+        sum[c] += node.share[c] * medium.albedo * arriving[c] * std::exp(-medium.extinction * length);
+      }
+    }
+  }
+  return sum;
+}
+
+// Sum over the paths of the fluence there.
+Rgb EdgeExitance::scattered_more(const Paths& paths, std::span<const FluenceInCell> fluence) const {
+  Rgb sum{};
+  for (const Node& node : paths.nodes) {
+    const FluenceInCell& here = fluence[node.cell];
+    const Vec3f apart = Vec3f(node.position) - space_.grid.cells()[node.cell].centre;
+    for (std::size_t c = 0; c < 3; ++c)
+      sum[c] += node.share[c] * space_.media_of(node.cell)[c].albedo *
+                double(std::max(0.f, here.value.c[c] + dot(here.gradient[c], apart)));
+  }
+  return sum;
+}
+
+std::vector<EdgeExitance::AtSample> EdgeExitance::exitance(const EnteringLight& light,
+                                                           std::span<const FluenceInCell> fluence) const {
+  std::vector<Source> sources;
+  for_each_source(space_, light, [&](std::vector<Rgb> flux, const DirectionsOf& directions) {
+    sources.push_back({std::move(flux), directions});
+  });
+  const double factor = 1 / (4 * space_.eta() * space_.eta());
+  std::vector<AtSample> result(samples_.size());
+  parallel_chunks(samples_.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
+    Paths paths;
+    for (std::size_t i = begin; i < end; ++i) {
+      follow(samples_[i], paths);
+      Rgb& weight = result[i].weight;
+      for (std::size_t c = 0; c < 3; ++c)
+        weight[c] = std::clamp(kWeight * paths.beside[c] - kLeastWeight, 0., 1.) *
+                    std::max(0., 1 - kOfThin * paths.opposite[c]);
+      if (!(max_component(weight) > 0)) continue;
+      const Rgb more = scattered_more(paths, fluence);
+      Rgb once{};
+      for (const Source& source : sources) once += scattered_once(paths, source);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const CalibratedMedium::Emission& emission = space_.media_of(cell_of(samples_[i]))[c].emission;
+        const double once_share = once[c] > 0 ? once[c] / (once[c] + more[c]) : 0;
+        const double lit = std::min(1., once_share / emission.once_share);
+        result[i].exitance[c] =
+            factor * (once[c] + more[c] * (emission.unlit + (emission.lit - emission.unlit) * lit));
+      }
+    }
+  });
+  return result;
+}
+
+}  // namespace opaline

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Exitance near edges and in thin parts, where light leaves after few collisions and diffusion is too dark.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "volume/body_paths.h"
+#include "volume/first_collisions.h"
+
+namespace opaline {
+
+/// Fluence of diffusion and its gradient at a cell, per lattice cell.
+struct FluenceInCell {
+  Channels value;
+  std::array<Vec3f, 3> gradient;
+};
+
+/// Emission of the last collisions along paths to the surface, for samples with another part of the surface within a few
+/// mean free paths. Light scattered once is found along the directions of the lights, and light scattered more often by
+/// the fluence of diffusion. References what `space` does.
+class EdgeExitance {
+ public:
+  explicit EdgeExitance(const DiffusionSpace& space);
+
+  /// Samples near other parts of the surface.
+  std::span<const std::uint32_t> samples() const { return samples_; }
+
+  struct AtSample {
+    Rgb exitance;  ///< of light that has collided, W per area
+    Rgb weight;    ///< over that of diffusion, 0 to 1
+  };
+  /// in    fluence: of all cells
+  /// out   one per sample of samples()
+  std::vector<AtSample> exitance(const EnteringLight& light, std::span<const FluenceInCell> fluence) const;
+
+ private:
+  /// Place on a path with its share of the light seen, per channel.
+  struct Node {
+    Vec3d position;
+    std::uint32_t cell;
+    Rgb share;
+  };
+  /// Paths from a sample.
+  struct Paths {
+    std::vector<Node> nodes;
+    Rgb beside{}, opposite{};           ///< shares of the light seen through sheets beside and opposite
+    std::vector<std::uint32_t> sheets;  ///< an element of each sheet seen, the sample's own first
+  };
+  /// Light of one direction inside, and an element of the sheet where it enters; reflected at another sheet, unless kNone.
+  struct Beam {
+    Vec3d along;
+    std::uint32_t element;
+    double share;
+    std::uint32_t mirror = DiffusionGrid::kNone;
+  };
+  /// Place where light came through a sheet.
+  struct Entry {
+    double length = 0;
+    std::uint32_t element = DiffusionGrid::kNone;
+  };
+  struct Source {
+    std::vector<Rgb> flux;
+    DirectionsOf directions;
+  };
+
+  float agreement(const BoundaryElement& from, std::uint32_t element) const {
+    return dot(from.normal, space_.boundary.elements[element].normal);
+  }
+  bool is_near_other_surface(std::size_t sample) const;
+  void follow(std::size_t sample, Paths& paths) const;
+  void add_sheet(std::uint32_t element, Paths& paths) const;
+  Rgb absorbed_in(double step, std::uint32_t cell) const;
+  Entry back_to_sheet(const Vec3d& position, const Vec3d& along, std::uint32_t sheet) const;
+  Entry entry_of(const Beam& beam, const Vec3d& position) const;
+  std::vector<std::vector<Beam>> beams_of(const Paths& paths, const Source& source) const;
+  Rgb scattered_once(const Paths& paths, const Source& source) const;
+  Rgb scattered_more(const Paths& paths, std::span<const FluenceInCell> fluence) const;
+  std::uint32_t element_of(std::size_t sample) const { return space_.boundary.of_sample[sample]; }
+  std::uint32_t cell_of(std::size_t sample) const { return space_.attached[element_of(sample)].cell; }
+
+  DiffusionSpace space_;
+  BodyPaths paths_;
+  double longest_ = 0;  // mean free path
+  double step_ = 0;     // in the smallest cells of a homogeneous medium
+  Rgb absorbed_{};      // share, in such a step
+  std::vector<std::uint32_t> samples_;
+};
+
+}  // namespace opaline
