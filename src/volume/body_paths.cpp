@@ -5,15 +5,45 @@
 
 namespace opaline {
 
-ElementsOfCells::ElementsOfCells(std::span<const AttachedElement> attached, std::size_t cells)
-    : first_(cells + 1) {
-  for (const AttachedElement& at : attached)
-    if (at.cell != DiffusionGrid::kNone) ++first_[at.cell + 1];
+ElementsOfCells::ElementsOfCells(const Lattice& lattice, const DiffusionGrid& grid, const Boundary& boundary,
+                                 std::span<const AttachedElement> attached)
+    : first_(grid.cells().size() + 1) {
+  std::vector<std::uint32_t> cells(attached.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::uint32_t own = grid.at(Vec3f(lattice.into(Vec3d(boundary.elements[i].position))));
+    cells[i] = own == DiffusionGrid::kNone ? attached[i].cell : own;
+    if (cells[i] != DiffusionGrid::kNone) ++first_[cells[i] + 1];
+  }
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   elements_.resize(first_.back());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (std::uint32_t i = 0; i < attached.size(); ++i)
-    if (attached[i].cell != DiffusionGrid::kNone) elements_[next[attached[i].cell]++] = i;
+  for (std::uint32_t i = 0; i < cells.size(); ++i)
+    if (cells[i] != DiffusionGrid::kNone) elements_[next[cells[i]]++] = i;
+}
+
+// Nearest element around a point that a path leaves by, among those of a cell.
+std::uint32_t BodyPaths::nearest_left(const Way& way, const Vec3d& about, std::uint32_t cell,
+                                      bool only_if_behind) const {
+  std::uint32_t found = DiffusionGrid::kNone;
+  double nearest = INFINITY;
+  for (const std::uint32_t e : space_.elements_of.of(cell)) {
+    const BoundaryElement& element = space_.boundary.elements[e];
+    const Vec3d apart = about - space_.in_lattice(element.position), normal(element.normal);
+    if (!(dot(way.along, normal) > 0) || dot(apart, apart) >= nearest) continue;
+    if (only_if_behind && !(dot(apart, normal) > 0)) continue;
+    nearest = dot(apart, apart);
+    found = e;
+  }
+  return found;
+}
+
+// Length at which a path leaves the cells.
+double BodyPaths::end_of_cells(const Way& way, double inside, double outside) const {
+  for (int i = 0; i < 5; ++i) {
+    const double middle = .5 * (inside + outside);
+    (space_.grid.at(Vec3f(at(way, middle))) == DiffusionGrid::kNone ? outside : inside) = middle;
+  }
+  return inside;
 }
 
 // Exit through the plane of the nearest boundary element, if the path leaves the body between `least`, in the
@@ -24,18 +54,21 @@ std::optional<BodyPaths::Exit> BodyPaths::exit_at(const Way& way, double length,
   const double cell = space_.lattice.cell;
   const Vec3d end = at(way, length);
   const bool has_left = next == DiffusionGrid::kNone;
-  Exit exit{length, ~0u, has_left ? last : next};
+  Exit exit{length, DiffusionGrid::kNone, has_left ? last : next};
   const Vec3d about = has_left ? end - way.along * (.5 * kStep) : end;
-  double nearest = INFINITY;
-  for (const std::uint32_t e : space_.elements_of.of(exit.cell)) {
-    const BoundaryElement& element = space_.boundary.elements[e];
-    const Vec3d apart = about - space_.in_lattice(element.position), normal(element.normal);
-    if (!(dot(way.along, normal) > 0) || dot(apart, apart) >= nearest) continue;
-    if (!has_left && !(dot(apart, normal) > 0)) continue;
-    nearest = dot(apart, apart);
-    exit.element = e;
+  exit.element = nearest_left(way, about, exit.cell, !has_left);
+  if (exit.element == DiffusionGrid::kNone && has_left) {
+    // The step may have crossed a narrow cell with the elements, or end in one whose elements belong to the next.
+    const double left = end_of_cells(way, least, length);
+    for (const double back : {0., .1, .4, .8}) {
+      const std::uint32_t there = space_.grid.at(Vec3f(at(way, left - back * cell)));
+      if (there == DiffusionGrid::kNone || there == last) continue;
+      exit.cell = there;
+      exit.element = nearest_left(way, about, there, false);
+      if (exit.element != DiffusionGrid::kNone) break;
+    }
   }
-  if (exit.element == ~0u) return {};
+  if (exit.element == DiffusionGrid::kNone) return {};
   const BoundaryElement& element = space_.boundary.elements[exit.element];
   const Vec3d normal(element.normal);
   exit.length = dot(space_.in_lattice(element.position) - way.from, normal) /

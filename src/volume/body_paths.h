@@ -21,11 +21,12 @@ struct AttachedElement {
   double depth = 0;  ///< depth of the cell's centre under it, world units
 };
 
-/// The boundary elements of each cell.
+/// The boundary elements in each cell; where an element's place has no cell, its attached cell has it.
 class ElementsOfCells {
  public:
   ElementsOfCells() = default;
-  ElementsOfCells(std::span<const AttachedElement> attached, std::size_t cells);
+  ElementsOfCells(const Lattice& lattice, const DiffusionGrid& grid, const Boundary& boundary,
+                  std::span<const AttachedElement> attached);
   std::span<const std::uint32_t> of(std::uint32_t cell) const {
     return std::span(elements_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
   }
@@ -100,6 +101,9 @@ class BodyPaths {
   }
 
  private:
+  std::uint32_t nearest_left(const Way& way, const Vec3d& about, std::uint32_t cell,
+                             bool only_if_behind) const;
+  double end_of_cells(const Way& way, double inside, double outside) const;
   std::optional<Exit> exit_at(const Way& way, double length, double least, std::uint32_t last,
                               std::uint32_t next) const;
 

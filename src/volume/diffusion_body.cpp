@@ -100,7 +100,7 @@ DiffusionBody::DiffusionBody(const World& world, std::span<const std::uint32_t> 
       grid_(make_grid(world, meshes, lattice_, boundary_)) {
   if (media.inside) find_media(media);
   attach();
-  elements_of_ = ElementsOfCells(attached_, grid_.cells().size());
+  elements_of_ = ElementsOfCells(lattice_, grid_, boundary_, attached_);
   if (has_edges) edges_ = std::make_unique<const EdgeExitance>(space());
 }
 
@@ -252,7 +252,6 @@ void DiffusionBody::correct_edges(const EnteringLight& light, Solution& solution
     const RgbF by_diffusion = solution.exitance[s] - solution.uncollided[boundary_.of_sample[s]];
     const Rgb change = near_edges[i].weight * (near_edges[i].exitance - Rgb(by_diffusion));
     solution.exitance[s] += RgbF(change);
-    if (getenv("EDGE_DEBUG")) solution.exitance[s] = RgbF(near_edges[i].weight * 1.0);
     more += change * double(samples_[s].area);
   }
   Rgb factor(1);

@@ -150,7 +150,7 @@ EdgeExitance::Entry EdgeExitance::back_to_sheet(const Vec3d& position, const Vec
     const Vec3d entry = position - along * length;
     const std::uint32_t before = element;
     double nearest = INFINITY;
-    for (const double below : {.05, .35, .7}) {  // cells; as elements are attached
+    for (const double below : {0., .05, .35, .7}) {  // cells
       const std::uint32_t cell = space_.grid.at(Vec3f(entry - normal * below));
       if (cell == DiffusionGrid::kNone) continue;
       for (const std::uint32_t e : space_.elements_of.of(cell)) {
