@@ -11,15 +11,15 @@
 namespace opaline {
 namespace {
 
-constexpr double kFarthest = 4;     // mean free paths
+constexpr double kFarthest = 3;     // mean free paths
 constexpr double kSameSheet = .9;   // least agreement of normals of one sheet
-constexpr double kWeight = 15;      // per fraction of light from another part of the surface
+constexpr double kWeight = 6;       // per fraction of light from another part of the surface
 constexpr double kLeastLeft = .02;  // of a path, to be followed
 constexpr double kLeastReflected = .05;
-constexpr double kLeastWeight = .05;
+constexpr double kLeastWeight = .1;
 constexpr double kOfThin = 4;  // subtracted, per share of light from an opposite sheet
-constexpr int kLegs = 3;       // between reflections at the surface
-constexpr std::size_t kPaths = 12, kOfRing = 6;
+constexpr int kLegs = 2;       // of a path, reflected at the surface once
+constexpr std::size_t kPaths = 10, kOfRing = 5;
 constexpr double kOfNode = .5;  // of the light of a path, sum of the channels, at one place
 
 /// Direction outside, with the probability of its cosine: in rings.
@@ -29,6 +29,12 @@ Vec3d outside_direction(std::size_t i, std::size_t of_ring, const Vec3d& x, cons
   const double square = (double(ring) + .5) / double(rings), sine = std::sqrt(square);
   const double angle = 2 * std::numbers::pi * (double(i % of_ring) + .5) / double(of_ring);
   return x * (sine * std::cos(angle)) + y * (sine * std::sin(angle)) + normal * std::sqrt(1 - square);
+}
+
+/// True if two elements are in one plane.
+bool is_level(const BoundaryElement& a, const BoundaryElement& b) {
+  return dot(a.normal, b.normal) > .9999f &&
+         std::abs(dot(a.normal, b.position - a.position)) < 1e-3f * std::sqrt(a.area);
 }
 
 }  // namespace
@@ -147,6 +153,7 @@ EdgeExitance::Entry EdgeExitance::back_to_sheet(const Vec3d& position, const Vec
     const Vec3d normal(plane.normal);
     length = std::max(0., dot(space_.in_lattice(plane.position) - position, normal) /
                               std::max(BodyPaths::kLeastCosine, -dot(along, normal)));
+    if (length * space_.lattice.cell > kFarthest * longest_) return {};
     const Vec3d entry = position - along * length;
     const std::uint32_t before = element;
     double nearest = INFINITY;
@@ -167,7 +174,7 @@ EdgeExitance::Entry EdgeExitance::back_to_sheet(const Vec3d& position, const Vec
       if (std::isfinite(nearest)) break;
     }
     if (!std::isfinite(nearest)) return {};
-    if (element == before) break;
+    if (element == before || is_level(plane, space_.boundary.elements[element])) break;
   }
   return {length * space_.lattice.cell, element};
 }
@@ -187,6 +194,7 @@ std::vector<std::vector<EdgeExitance::Beam>> EdgeExitance::beams_of(const Paths&
                                                                     const Source& source) const {
   std::vector<std::vector<Beam>> beams;
   for (const std::uint32_t sheet : paths.sheets) {
+    if (!(max_component(source.flux[sheet]) > 0)) continue;
     const Vec3d normal(space_.boundary.elements[sheet].normal);
     const EntryDirections directions = source.directions(sheet);
     const auto count = double(directions.all().size());  // each node has one of them
@@ -245,36 +253,58 @@ Rgb EdgeExitance::scattered_more(const Paths& paths, std::span<const FluenceInCe
   return sum;
 }
 
+// Share of this exitance in that of a sample.
+Rgb EdgeExitance::weight_of(const Paths& paths) {
+  Rgb weight{};
+  for (std::size_t c = 0; c < 3; ++c)
+    weight[c] = std::clamp(kWeight * paths.beside[c] - kLeastWeight, 0., 1.) *
+                std::max(0., 1 - kOfThin * paths.opposite[c]);
+  return weight;
+}
+
+// Lights scattered more than once are dimmer or brighter than by diffusion, depending on light entering nearby.
 std::vector<EdgeExitance::AtSample> EdgeExitance::exitance(const EnteringLight& light,
                                                            std::span<const FluenceInCell> fluence) const {
+  constexpr std::size_t kAtOnce = 4;  // lights, by memory
+  std::vector<AtSample> result(samples_.size());
   std::vector<Source> sources;
+  const auto add_scattered_once = [&] {
+    for_each_path([&](std::size_t i, const Paths& paths) {
+      for (const Source& source : sources) result[i].exitance += scattered_once(paths, source);
+    });
+    sources.clear();
+  };
   for_each_source(space_, light, [&](std::vector<Rgb> flux, const DirectionsOf& directions) {
     sources.push_back({std::move(flux), directions});
+    if (sources.size() == kAtOnce) add_scattered_once();
   });
   const double factor = 1 / (4 * space_.eta() * space_.eta());
-  std::vector<AtSample> result(samples_.size());
+  for_each_path([&](std::size_t i, const Paths& paths) {
+    Rgb once = result[i].exitance;
+    for (const Source& source : sources) once += scattered_once(paths, source);
+    const Rgb more = scattered_more(paths, fluence);
+    result[i].weight = weight_of(paths);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const CalibratedMedium::Emission& emission = space_.media_of(cell_of(samples_[i]))[c].emission;
+      const double once_share = once[c] > 0 ? once[c] / (once[c] + more[c]) : 0;
+      const double lit = std::min(1., once_share / emission.once_share);
+      result[i].exitance[c] =
+          factor * (once[c] + more[c] * (emission.unlit + (emission.lit - emission.unlit) * lit));
+    }
+  });
+  return result;
+}
+
+// Calls visit(index among samples_, paths) for those with a weight.
+template <class Visit>
+void EdgeExitance::for_each_path(const Visit& visit) const {
   parallel_chunks(samples_.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
     Paths paths;
     for (std::size_t i = begin; i < end; ++i) {
       follow(samples_[i], paths);
-      Rgb& weight = result[i].weight;
-      for (std::size_t c = 0; c < 3; ++c)
-        weight[c] = std::clamp(kWeight * paths.beside[c] - kLeastWeight, 0., 1.) *
-                    std::max(0., 1 - kOfThin * paths.opposite[c]);
-      if (!(max_component(weight) > 0)) continue;
-      const Rgb more = scattered_more(paths, fluence);
-      Rgb once{};
-      for (const Source& source : sources) once += scattered_once(paths, source);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const CalibratedMedium::Emission& emission = space_.media_of(cell_of(samples_[i]))[c].emission;
-        const double once_share = once[c] > 0 ? once[c] / (once[c] + more[c]) : 0;
-        const double lit = std::min(1., once_share / emission.once_share);
-        result[i].exitance[c] =
-            factor * (once[c] + more[c] * (emission.unlit + (emission.lit - emission.unlit) * lit));
-      }
+      if (max_component(weight_of(paths)) > 0) visit(i, paths);
     }
   });
-  return result;
 }
 
 }  // namespace opaline

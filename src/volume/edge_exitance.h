@@ -76,6 +76,9 @@ class EdgeExitance {
   Entry back_to_sheet(const Vec3d& position, const Vec3d& along, std::uint32_t sheet) const;
   Entry entry_of(const Beam& beam, const Vec3d& position) const;
   std::vector<std::vector<Beam>> beams_of(const Paths& paths, const Source& source) const;
+  static Rgb weight_of(const Paths& paths);
+  template <class Visit>
+  void for_each_path(const Visit& visit) const;
   Rgb scattered_once(const Paths& paths, const Source& source) const;
   Rgb scattered_more(const Paths& paths, std::span<const FluenceInCell> fluence) const;
   std::uint32_t element_of(std::size_t sample) const { return space_.boundary.of_sample[sample]; }
