@@ -273,7 +273,8 @@ class EntryInParts {
       for (std::size_t i = begin; i < end; ++i) {
         advance(monitor_, 1);
         if (!(max_component(flux[i]) > 0) || space_.attached[i].cell == DiffusionGrid::kNone) continue;
-        for (const EntryDirection& from : directions(i).all())
+        const EntryDirections entry = directions(i);
+        for (const EntryDirection& from : entry.all())
           parts_[part].enter(Vec3d(from.outward), flux[i] * from.share, i);
       }
     });
