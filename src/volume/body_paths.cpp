@@ -21,7 +21,7 @@ ElementsOfCells::ElementsOfCells(const Lattice& lattice, const DiffusionGrid& gr
     if (cells[i] != DiffusionGrid::kNone) elements_[next[cells[i]]++] = i;
 }
 
-// Nearest element around a point that a path leaves by, among those of a cell.
+// Nearest element to a point among a cell's, with the path going outwards.
 std::uint32_t BodyPaths::nearest_left(const Way& way, const Vec3d& about, std::uint32_t cell,
                                       bool only_if_behind) const {
   std::uint32_t found = DiffusionGrid::kNone;
@@ -58,7 +58,7 @@ std::optional<BodyPaths::Exit> BodyPaths::exit_at(const Way& way, double length,
   const Vec3d about = has_left ? end - way.along * (.5 * kStep) : end;
   exit.element = nearest_left(way, about, exit.cell, !has_left);
   if (exit.element == DiffusionGrid::kNone && has_left) {
-    // The step may have crossed a narrow cell with the elements, or end in one whose elements belong to the next.
+    // The step may have crossed a narrow cell with the elements.
     const double left = end_of_cells(way, least, length);
     for (const double back : {0., .1, .4, .8}) {
       const std::uint32_t there = space_.grid.at(Vec3f(at(way, left - back * cell)));

@@ -21,7 +21,7 @@ struct AttachedElement {
   double depth = 0;  ///< depth of the cell's centre under it, world units
 };
 
-/// The boundary elements in each cell; where an element's place has no cell, its attached cell has it.
+/// The boundary elements in each cell, or in their attached cell if there is none around them.
 class ElementsOfCells {
  public:
   ElementsOfCells() = default;

@@ -237,7 +237,7 @@ void DiffusionBody::read(std::span<const RgbF> at_once, Solution& solution) cons
     for (RgbF& leaves : *values) leaves = RgbF(Rgb(leaves) * factor);
 }
 
-// Of light that leaves near edges, a part would be absorbed otherwise, and the rest leave elsewhere.
+// Without its exit at an edge, a part of the light would be absorbed, and the rest leave elsewhere.
 void DiffusionBody::correct_edges(const EnteringLight& light, Solution& solution) const {
   if (edges_ == nullptr || edges_->samples().empty()) return;
   std::vector<FluenceInCell> fluence(solution.fluence.size());

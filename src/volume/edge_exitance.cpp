@@ -14,13 +14,13 @@ namespace {
 constexpr double kFarthest = 3;     // mean free paths
 constexpr double kSameSheet = .9;   // least agreement of normals of one sheet
 constexpr double kWeight = 6;       // per fraction of light from another part of the surface
-constexpr double kLeastLeft = .02;  // of a path, to be followed
+constexpr double kLeastLeft = .02;  // share of a path to follow
 constexpr double kLeastReflected = .05;
 constexpr double kLeastWeight = .1;
 constexpr double kOfThin = 4;  // subtracted, per share of light from an opposite sheet
-constexpr int kLegs = 2;       // of a path, reflected at the surface once
+constexpr int kLegs = 2;       // pieces of a path, reflected at the surface once
 constexpr std::size_t kPaths = 10, kOfRing = 5;
-constexpr double kOfNode = .5;  // of the light of a path, sum of the channels, at one place
+constexpr double kOfNode = .5;  // light of a path at one place, sum of the channels
 
 /// Direction outside, with the probability of its cosine: in rings.
 Vec3d outside_direction(std::size_t i, std::size_t of_ring, const Vec3d& x, const Vec3d& y,
@@ -87,7 +87,7 @@ void EdgeExitance::add_sheet(std::uint32_t element, Paths& paths) const {
   paths.sheets.push_back(element);
 }
 
-// Paths inwards, reflected where they meet the surface.
+// Paths inwards, reflected at the surface.
 void EdgeExitance::follow(std::size_t sample, Paths& paths) const {
   const BoundaryElement& from = space_.samples[sample];
   paths.nodes.clear();
@@ -141,8 +141,8 @@ void EdgeExitance::follow(std::size_t sample, Paths& paths) const {
   paths.opposite = paths.opposite / all;
 }
 
-// Place where light that reaches a position came through a sheet: by the plane of its element, and by that of the element
-// found there.
+// Entry, through a sheet, of light reaching a position: by the plane of its element, then by that of the element found
+// there.
 EdgeExitance::Entry EdgeExitance::back_to_sheet(const Vec3d& position, const Vec3d& along,
                                                 std::uint32_t sheet) const {
   const Vec3d sheet_normal(space_.boundary.elements[sheet].normal);
@@ -253,7 +253,6 @@ Rgb EdgeExitance::scattered_more(const Paths& paths, std::span<const FluenceInCe
   return sum;
 }
 
-// Share of this exitance in that of a sample.
 Rgb EdgeExitance::weight_of(const Paths& paths) {
   Rgb weight{};
   for (std::size_t c = 0; c < 3; ++c)
@@ -262,7 +261,7 @@ Rgb EdgeExitance::weight_of(const Paths& paths) {
   return weight;
 }
 
-// Lights scattered more than once are dimmer or brighter than by diffusion, depending on light entering nearby.
+// Where light enters, the fluence near the surface is above that of diffusion.
 std::vector<EdgeExitance::AtSample> EdgeExitance::exitance(const EnteringLight& light,
                                                            std::span<const FluenceInCell> fluence) const {
   constexpr std::size_t kAtOnce = 4;  // lights, by memory

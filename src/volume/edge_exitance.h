@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exitance near edges and in thin parts, where light leaves after few collisions and diffusion is too dark.
+// Exitance near edges, where light leaves after few collisions and diffusion is too dark.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@ struct FluenceInCell {
   std::array<Vec3f, 3> gradient;
 };
 
-/// Emission of the last collisions along paths to the surface, for samples with another part of the surface within a few
-/// mean free paths. Light scattered once is found along the directions of the lights, and light scattered more often by
-/// the fluence of diffusion. References what `space` does.
+/// Emission of the last collisions along paths to the surface, for samples with another sheet of the surface within a few
+/// mean free paths. Light scattered once follows from the directions of the lights, light scattered more often from the
+/// fluence of diffusion. References the data of `space`.
 class EdgeExitance {
  public:
   explicit EdgeExitance(const DiffusionSpace& space);
@@ -29,8 +29,8 @@ class EdgeExitance {
   std::span<const std::uint32_t> samples() const { return samples_; }
 
   struct AtSample {
-    Rgb exitance;  ///< of light that has collided, W per area
-    Rgb weight;    ///< over that of diffusion, 0 to 1
+    Rgb exitance;  ///< by light that has collided, W per area
+    Rgb weight;    ///< share of this exitance, 0 to 1; the rest is that of diffusion
   };
   /// in    fluence: of all cells
   /// out   one per sample of samples()
@@ -49,14 +49,14 @@ class EdgeExitance {
     Rgb beside{}, opposite{};           ///< shares of the light seen through sheets beside and opposite
     std::vector<std::uint32_t> sheets;  ///< an element of each sheet seen, the sample's own first
   };
-  /// Light of one direction inside, and an element of the sheet where it enters; reflected at another sheet, unless kNone.
+  /// Light of one direction inside, entering through the sheet of an element. Mirror: element of a sheet reflecting it.
   struct Beam {
     Vec3d along;
     std::uint32_t element;
     double share;
     std::uint32_t mirror = DiffusionGrid::kNone;
   };
-  /// Place where light came through a sheet.
+  /// Entry of light through a sheet.
   struct Entry {
     double length = 0;
     std::uint32_t element = DiffusionGrid::kNone;

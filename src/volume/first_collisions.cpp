@@ -16,7 +16,7 @@ namespace {
 constexpr double kSpread = 1.2;         // cells around an exit
 constexpr double kLeastAgreement = .5;  // least agreement of normals of one sheet
 constexpr int kMostReflections = 4;
-constexpr double kLeastReflected = .05;  // of the flux at the first exit
+constexpr double kLeastReflected = .05;  // share of the flux at the first exit
 constexpr double kFarthest = 4;          // free paths; longer flights end there
 
 // Additive recurrence with the golden ratio in [0, 1).
@@ -70,7 +70,7 @@ class Depositor {
     std::uint32_t element;
     double per_area;
   };
-  std::vector<Share> spread_;          // of the current exit
+  std::vector<Share> spread_;          // elements of the current exit
   std::vector<std::uint32_t> around_;  // cells around it
   double longest_ = 0;                 // free path
   Stretch step_;                       // smallest cells, in a homogeneous medium

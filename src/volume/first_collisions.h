@@ -28,11 +28,11 @@ struct EnteringLight {
 /// Flux by cell, and exitance by element.
 struct FirstCollisions {
   std::vector<Channels> source;
-  std::vector<RgbF> uncollided;  ///< light that crosses the body
-  std::vector<RgbF> at_once;     ///< light that leaves where it collides, too close to the surface for cells
+  std::vector<RgbF> uncollided;  ///< light crossing the body
+  std::vector<RgbF> at_once;     ///< light leaving at its collision, too close to the surface for cells
 };
 
-/// Directions of the light that enters at an element, by its index.
+/// Directions of the light entering at an element, by its index.
 using DirectionsOf = std::function<EntryDirections(std::size_t)>;
 /// Calls visit(flux, directions) for each light and for uniform light; flux: transmitted at each element, W.
 void for_each_source(const DiffusionSpace& space, const EnteringLight& light,
