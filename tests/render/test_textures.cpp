@@ -197,7 +197,7 @@ TEST(Textures, BendNormals) {
 // Claim: under a tint of a and b on its two sides, in even light, a ball far larger than light spreads in it sends out
 // a M and b M (M without a tint) away from their border, whatever the mix; on the border a M and b M, sharply, by "post",
 // (a + b)/2 M on both sides by "pre", root(a) (root a + root b)/2 M by "split". Source: symmetry about the border.
-// Tolerance: 2 %, of 20k samples; 10 % on the border, where which samples lie on which side is chance. Fails if the
+// Tolerance: 2 %, of 80k samples; 10 % on the border, where which samples lie on which side is chance. Fails if the
 // exponents are exchanged, the tint is met twice, or not where light enters.
 TEST(Textures, MixAsTheySay) {
   const ScratchFolder folder;
@@ -213,7 +213,7 @@ TEST(Textures, MixAsTheySay) {
       const auto value = [&](Session& session, const std::string& tint, int x,
                              const std::string& field_of_view) {
         const std::vector<std::string> overrides{
-            "media.m.sigma_a=0.3", "camera.field_of_view=" + field_of_view,
+            "media.m.sigma_a=0.3", "settings.samples=80000", "camera.field_of_view=" + field_of_view,
             "film.crop=[" + std::to_string(x) + ",16," + std::to_string(x + 1) + ",17]"};
         session.edit(parse_scene(ball_scene(tint, .5, method), folder.file("scene.json"), overrides));
         return double(channel(session.render().image, 0, 0, "diffuse.G"));

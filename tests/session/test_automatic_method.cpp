@@ -98,9 +98,11 @@ TEST(AutomaticMethod, SuitableCellsAreKept) {
     Session session;
     session.match_new_session(matches_new);
     Scene scene = with_method(open_choice(), Method::automatic);
+    Rgb& scattering = std::get<PhysicalMedium>(scene.media[0].coefficients).sigma_s_prime;
+    scattering *= 2;  // many cells, whose size is that of the medium
     session.edit(scene);
     session.prepare();
-    std::get<PhysicalMedium>(scene.media[0].coefficients).sigma_s_prime *= denser;
+    scattering *= denser;
     scene.settings.cell_size = cell_size;
     session.edit(scene);
     session.prepare();

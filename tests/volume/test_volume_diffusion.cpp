@@ -61,10 +61,10 @@ TEST(VolumeDiffusion, FlatFaceIsAHalfSpace) {
 
 // Claim: light of equal radiance from all sides sends out what surroundings do, wherever it enters. Source: the same light by
 // other directions. Tolerance: .3 % in the mean, which is .07 % with eta 1 (1.8 % were the directions spread evenly over the
-// hemisphere), and rms over a box 6 and 2 %, few directions each (measured 5.7 and 1.2 %). Even light is solved on cells of
+// hemisphere), and rms over a ball 6 and 2 %, few directions each (measured 5.7 and 1.2 %). Even light is solved on cells of
 // twice the size, here .5. Fails if: they are not spread by the cosine and the boundary.
 TEST(VolumeDiffusion, EvenLightIsThatOfSurroundings) {
-  LitBody body(BoxShape{{-4, -3, -2}, {4, 3, 2}}, 2000, NormalMode::faceted);
+  LitBody body(SphereShape{{}, 3}, 2000);
   const Surroundings light{Rgb(1)};
   const double unit = body.world.unit, cell = .25 / unit;
   CutSurface cut = cut_surface(body.world, body.meshes, cell, 1);
