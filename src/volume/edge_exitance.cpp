@@ -47,26 +47,38 @@ EdgeExitance::EdgeExitance(const DiffusionSpace& space) : space_(space), paths_(
     step_ = BodyPaths::kStep * space.lattice.cell;
     absorbed_ = absorbed_in(step_, 0);
   }
-  std::vector<char> is_near(space.samples.size());
+  std::vector<char> is_near(space.boundary.elements.size());
   parallel_chunks(is_near.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t s = begin; s < end; ++s) is_near[s] = is_near_other_surface(s) ? 1 : 0;
+    for (std::size_t i = begin; i < end; ++i) is_near[i] = is_near_other_sheet(i) ? 1 : 0;
   });
-  for (std::size_t s = 0; s < is_near.size(); ++s)
-    if (is_near[s] != 0) samples_.push_back(std::uint32_t(s));
+  for (std::size_t s = 0; s < space.samples.size(); ++s)
+    if (is_near[element_of(s)] != 0) samples_.push_back(std::uint32_t(s));
 }
 
-// Quick: along the flattest paths.
-bool EdgeExitance::is_near_other_surface(std::size_t sample) const {
-  if (cell_of(sample) == DiffusionGrid::kNone) return false;
-  const BoundaryElement& from = space_.samples[sample];
+bool EdgeExitance::has_own_sheet_only(const BoundaryElement& from, const Vec3d& position) const {
+  const std::uint32_t cell = space_.grid.at(Vec3f(position));
+  return cell != DiffusionGrid::kNone &&
+         std::ranges::all_of(space_.elements_of.of(cell),
+                             [&](std::uint32_t e) { return agreement(from, e) > kSameSheet; });
+}
+
+// Along the flattest paths, if they may leave: by some points on them.
+bool EdgeExitance::is_near_other_sheet(std::size_t element) const {
+  const std::uint32_t cell = space_.attached[element].cell;
+  if (cell == DiffusionGrid::kNone) return false;
+  const BoundaryElement& from = space_.boundary.elements[element];
+  const double farthest = kFarthest * longest_;
   const Vec3d normal(from.normal);
   Vec3d x, y;
   tangent_frame(normal, x, y);
   for (std::size_t k = kPaths - kOfRing; k < kPaths; ++k) {
     const Vec3d outward = outside_direction(k, kOfRing, x, y, normal);
     const Way way{space_.in_lattice(from.position), refracted_inward(-outward, normal, space_.eta())};
-    const BodyPaths::End end =
-        paths_.follow(way, 0, kFarthest * longest_, cell_of(sample), [](double, double, std::uint32_t) {});
+    if (std::ranges::all_of(std::array{1. / 3, 2. / 3, 1.}, [&](double part) {
+          return has_own_sheet_only(from, paths_.at(way, part * farthest));
+        }))
+      continue;
+    const BodyPaths::End end = paths_.follow(way, 0, farthest, cell, [](double, double, std::uint32_t) {});
     if (end.exit && std::abs(agreement(from, end.exit->element)) < kSameSheet) return true;
   }
   return false;

@@ -69,7 +69,8 @@ class EdgeExitance {
   float agreement(const BoundaryElement& from, std::uint32_t element) const {
     return dot(from.normal, space_.boundary.elements[element].normal);
   }
-  bool is_near_other_surface(std::size_t sample) const;
+  bool has_own_sheet_only(const BoundaryElement& from, const Vec3d& position) const;
+  bool is_near_other_sheet(std::size_t element) const;
   void follow(std::size_t sample, Paths& paths) const;
   void add_sheet(std::uint32_t element, Paths& paths) const;
   Rgb absorbed_in(double step, std::uint32_t cell) const;
