@@ -239,14 +239,14 @@ void DiffusionBody::read(std::span<const RgbF> at_once, Solution& solution) cons
 
 // Without its exit at an edge, a part of the light would be absorbed, and the rest leave elsewhere: here, everywhere alike.
 // Solved again without this light, the rest of the surface is 1 to 4 % too bright (bench_volume_models --default).
-void DiffusionBody::correct_edges(const EnteringLight& light, Solution& solution) const {
+void DiffusionBody::correct_edges(const EnteringLight& light, Solution& solution, Monitor* monitor) const {
   if (edges_ == nullptr || edges_->samples().empty()) return;
   std::vector<FluenceInCell> fluence(solution.fluence.size());
   parallel_chunks(fluence.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i)
       fluence[i] = {solution.fluence[i], gradient_at(grid_, solution.fluence, std::uint32_t(i))};
   });
-  const std::vector<EdgeExitance::AtSample> near_edges = edges_->exitance(light, fluence);
+  const std::vector<EdgeExitance::AtSample> near_edges = edges_->exitance(light, fluence, monitor);
   Rgb more{};
   for (std::size_t i = 0; i < near_edges.size(); ++i) {
     const std::uint32_t s = edges_->samples()[i];

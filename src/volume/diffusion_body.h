@@ -45,7 +45,7 @@ class DiffusionBody {
 
   /// Corrects the exitance near edges.
   /// light: of this solution
-  void correct_edges(const EnteringLight& light, Solution& solution) const;
+  void correct_edges(const EnteringLight& light, Solution& solution, Monitor* monitor) const;
 
   /// A solution's fluence at the centres of another body's cells.
   std::vector<Channels> carried(const Solution& solution, const DiffusionBody& to) const;

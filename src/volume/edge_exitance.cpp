@@ -201,12 +201,25 @@ EdgeExitance::Entry EdgeExitance::entry_of(const Beam& beam, const Vec3d& positi
   return {turn.length + entry.length, entry.element};
 }
 
+// True if light enters there or in a cell beside.
+bool EdgeExitance::is_lit(std::uint32_t sheet, const Source& source) const {
+  const auto enters = [&](std::uint32_t e) { return max_component(source.flux[e]) > 0; };
+  if (enters(sheet)) return true;
+  const std::uint32_t cell = space_.attached[sheet].cell;
+  return cell != DiffusionGrid::kNone &&
+         std::ranges::any_of(space_.grid.links(cell), [&](const DiffusionGrid::Link& link) {
+           return std::ranges::any_of(space_.elements_of.of(link.to), [&](std::uint32_t e) {
+             return enters(e) && agreement(space_.boundary.elements[sheet], e) > kSameSheet;
+           });
+         });
+}
+
 // Beams through each sheet, and those reflected at each other one.
 std::vector<std::vector<EdgeExitance::Beam>> EdgeExitance::beams_of(const Paths& paths,
                                                                     const Source& source) const {
   std::vector<std::vector<Beam>> beams;
   for (const std::uint32_t sheet : paths.sheets) {
-    if (!(max_component(source.flux[sheet]) > 0)) continue;
+    if (!is_lit(sheet, source)) continue;
     const Vec3d normal(space_.boundary.elements[sheet].normal);
     const EntryDirections directions = source.directions(sheet);
     const auto count = double(directions.all().size());  // each node has one of them
@@ -275,12 +288,13 @@ Rgb EdgeExitance::weight_of(const Paths& paths) {
 
 // Where light enters, the fluence near the surface is above that of diffusion.
 std::vector<EdgeExitance::AtSample> EdgeExitance::exitance(const EnteringLight& light,
-                                                           std::span<const FluenceInCell> fluence) const {
+                                                           std::span<const FluenceInCell> fluence,
+                                                           Monitor* monitor) const {
   constexpr std::size_t kAtOnce = 4;  // lights, by memory
   std::vector<AtSample> result(samples_.size());
   std::vector<Source> sources;
   const auto add_scattered_once = [&] {
-    for_each_path([&](std::size_t i, const Paths& paths) {
+    for_each_path(monitor, [&](std::size_t i, const Paths& paths) {
       for (const Source& source : sources) result[i].exitance += scattered_once(paths, source);
     });
     sources.clear();
@@ -290,7 +304,7 @@ std::vector<EdgeExitance::AtSample> EdgeExitance::exitance(const EnteringLight& 
     if (sources.size() == kAtOnce) add_scattered_once();
   });
   const double factor = 1 / (4 * space_.eta() * space_.eta());
-  for_each_path([&](std::size_t i, const Paths& paths) {
+  for_each_path(monitor, [&](std::size_t i, const Paths& paths) {
     Rgb once = result[i].exitance;
     for (const Source& source : sources) once += scattered_once(paths, source);
     const Rgb more = scattered_more(paths, fluence);
@@ -308,8 +322,9 @@ std::vector<EdgeExitance::AtSample> EdgeExitance::exitance(const EnteringLight& 
 
 // Calls visit(index among samples_, paths) for those with a weight.
 template <class Visit>
-void EdgeExitance::for_each_path(const Visit& visit) const {
+void EdgeExitance::for_each_path(Monitor* monitor, const Visit& visit) const {
   parallel_chunks(samples_.size(), 64, [&](std::size_t begin, std::size_t end, std::size_t) {
+    advance(monitor, 0);
     Paths paths;
     for (std::size_t i = begin; i < end; ++i) {
       follow(samples_[i], paths);

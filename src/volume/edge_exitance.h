@@ -34,7 +34,9 @@ class EdgeExitance {
   };
   /// in    fluence: of all cells
   /// out   one per sample of samples()
-  std::vector<AtSample> exitance(const EnteringLight& light, std::span<const FluenceInCell> fluence) const;
+  /// error Error{interrupted}
+  std::vector<AtSample> exitance(const EnteringLight& light, std::span<const FluenceInCell> fluence,
+                                 Monitor* monitor) const;
 
  private:
   /// Place on a path with its share of the light seen, per channel.
@@ -76,10 +78,11 @@ class EdgeExitance {
   Rgb absorbed_in(double step, std::uint32_t cell) const;
   Entry back_to_sheet(const Vec3d& position, const Vec3d& along, std::uint32_t sheet) const;
   Entry entry_of(const Beam& beam, const Vec3d& position) const;
+  bool is_lit(std::uint32_t sheet, const Source& source) const;
   std::vector<std::vector<Beam>> beams_of(const Paths& paths, const Source& source) const;
   static Rgb weight_of(const Paths& paths);
   template <class Visit>
-  void for_each_path(const Visit& visit) const;
+  void for_each_path(Monitor* monitor, const Visit& visit) const;
   Rgb scattered_once(const Paths& paths, const Source& source) const;
   Rgb scattered_more(const Paths& paths, std::span<const FluenceInCell> fluence) const;
   std::uint32_t element_of(std::size_t sample) const { return space_.boundary.of_sample[sample]; }

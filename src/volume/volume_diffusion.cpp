@@ -122,7 +122,7 @@ VolumeExitance VolumeDiffusion::State::exitance(const EnteringLight& light, Moni
     const RgbF change = solution.exitance[result.error.size()] - before;
     result.error.push_back(RgbF(std::abs(change.x), std::abs(change.y), std::abs(change.z)) * kLeft);
   }
-  fine.correct_edges(light, solution);
+  fine.correct_edges(light, solution, monitor);
   result.exitance = std::move(solution.exitance);
   return result;
 }
