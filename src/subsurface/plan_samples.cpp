@@ -143,7 +143,7 @@ void choose_cells(const Scene& scene, const World& world, double fewest, BodyPla
                                                ? kOfVarying * short_length_of(scene, world, group)
                                                : std::min(length, kPerFading * shortest_fading(medium)));
   const double by_default = group.cell * Settings{}.cell_size / scene.settings.cell_size;
-  group.cell *= std::clamp(std::sqrt(group.area / (kEasyFaces * fewest)) / by_default, .5, 1.);
+  group.cell *= std::clamp(std::sqrt(group.area / (kEasyFaces * fewest)) / by_default, .25, 1.);
   if (group.thickness > 0)
     group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));
   group.cell = std::min(group.cell, std::sqrt(group.area / kFewestFaces));

@@ -180,9 +180,45 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
   std::vector<Channels> rough = solve_diffusion(problem, kRough, std::move(start), monitor).fluence;
   add_oblique_flow(problem, rough);
   solution.fluence = solve_diffusion(problem, kTolerance, std::move(rough), monitor).fluence;
-  solution.uncollided = std::move(collisions.uncollided);
-  read(collisions.at_once, solution);
+  for (std::size_t i = 0; i < attached_.size(); ++i) {
+    const Rgb direct =
+        Rgb(collisions.uncollided[i] + collisions.at_once[i]) * double(boundary_.elements[i].area);
+    solution.entered += direct, solution.left += direct;
+  }
+  solution.uncollided = at_samples(collisions.uncollided);
+  read(at_samples(collisions.at_once), solution);
   return solution;
+}
+
+// Values at the elements, interpolated at samples finer than these.
+std::vector<RgbF> DiffusionBody::at_samples(std::span<const RgbF> values) const {
+  constexpr float kRadius = 1.2f;  // cells
+  constexpr float kLeastAgreement = .5f;
+  std::vector<RgbF> result(samples_.size());
+  const bool is_finer = samples_.size() > values.size();
+  parallel_chunks(result.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::vector<std::uint32_t> around;
+    for (std::size_t s = begin; s < end; ++s) {
+      const BoundaryElement& sample = samples_[s];
+      result[s] = values[boundary_.of_sample[s]];
+      if (!is_finer) continue;
+      const Vec3f position(space().in_lattice(sample.position));
+      RgbF sum{};
+      float weights = 0;
+      grid_.find_around(position - sample.normal * .35f, sample.normal, around);
+      for (const std::uint32_t cell : around)
+        for (const std::uint32_t e : elements_of_.of(cell)) {
+          const BoundaryElement& element = boundary_.elements[e];
+          const Vec3f apart = Vec3f(space().in_lattice(element.position)) - position;
+          const float near = 1 - dot(apart, apart) / (kRadius * kRadius);
+          if (!(near > 0 && dot(element.normal, sample.normal) > kLeastAgreement)) continue;
+          sum += values[e] * (near * element.area);
+          weights += near * element.area;
+        }
+      if (weights > 0) result[s] = sum * (1 / weights);
+    }
+  });
+  return result;
 }
 
 // Exitance at the samples: fluence under a sample, at the depth of its cell's centre, times the conductance
@@ -215,7 +251,7 @@ void DiffusionBody::read(std::span<const RgbF> at_once, Solution& solution) cons
   for (std::size_t s = 0; s < samples_.size(); ++s) {
     const std::uint32_t i = boundary_.of_sample[s];
     const Vec3f apart = samples_[s].position - boundary_.elements[i].position;
-    RgbF leaves = solution.uncollided[i] + at_once[i];
+    RgbF leaves = solution.uncollided[s] + at_once[s];
     for (std::size_t c = 0; c < 3; ++c)
       leaves[c] += std::max(0.f, planes[i].value[c] + dot(planes[i].slope[c], apart));
     found += Rgb(leaves) * double(samples_[s].area);
@@ -223,8 +259,6 @@ void DiffusionBody::read(std::span<const RgbF> at_once, Solution& solution) cons
   }
   for (std::size_t i = 0; i < attached_.size(); ++i) {
     const auto& [cell, depth] = attached_[i];
-    const Rgb direct = Rgb(solution.uncollided[i] + at_once[i]) * double(boundary_.elements[i].area);
-    solution.entered += direct, solution.left += direct;
     if (cell == DiffusionGrid::kNone) continue;
     const std::array<CalibratedMedium, 3>& media = space().media_of(cell);
     for (std::size_t c = 0; c < 3; ++c)
@@ -250,7 +284,7 @@ void DiffusionBody::correct_edges(const EnteringLight& light, Solution& solution
   Rgb more{};
   for (std::size_t i = 0; i < near_edges.size(); ++i) {
     const std::uint32_t s = edges_->samples()[i];
-    const RgbF by_diffusion = solution.exitance[s] - solution.uncollided[boundary_.of_sample[s]];
+    const RgbF by_diffusion = solution.exitance[s] - solution.uncollided[s];
     const Rgb change = near_edges[i].weight * (near_edges[i].exitance - Rgb(by_diffusion));
     solution.exitance[s] += RgbF(change);
     more += change * double(samples_[s].area);

@@ -37,7 +37,7 @@ class DiffusionBody {
   struct Solution {
     std::vector<Channels> fluence;
     std::vector<RgbF> exitance;
-    std::vector<RgbF> uncollided;  ///< part of the exitance, by element
+    std::vector<RgbF> uncollided;  ///< part of the exitance
     Rgb entered{}, left{};         ///< light of all cells, W
   };
   /// start: initial guess of the fluence, or empty
@@ -62,6 +62,7 @@ class DiffusionBody {
   void attach();
   std::uint32_t nearest_below(const Vec3f& position, const Vec3f& normal) const;
   std::vector<Channels> losses() const;
+  std::vector<RgbF> at_samples(std::span<const RgbF> values) const;
   void read(std::span<const RgbF> at_once, Solution& solution) const;
 
   std::span<const BoundaryElement> samples_;

@@ -329,4 +329,18 @@ std::uint32_t DiffusionGrid::at(const Vec3f& point) const {
   return at(int(std::floor(point.x)), int(std::floor(point.y)), int(std::floor(point.z)));
 }
 
+void DiffusionGrid::find_around(const Vec3f& point, const Vec3f& normal,
+                                std::vector<std::uint32_t>& found) const {
+  constexpr float kFromPlane = .9f;
+  found.clear();
+  for (const float x : {-1.f, 0.f, 1.f})
+    for (const float y : {-1.f, 0.f, 1.f})
+      for (const float z : {-1.f, 0.f, 1.f}) {
+        const Vec3f beside(x, y, z);
+        if (std::abs(dot(beside, normal)) > kFromPlane) continue;
+        const std::uint32_t cell = at(point + beside);
+        if (cell != kNone && std::ranges::find(found, cell) == found.end()) found.push_back(cell);
+      }
+}
+
 }  // namespace opaline

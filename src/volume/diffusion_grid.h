@@ -56,6 +56,8 @@ class DiffusionGrid {
   std::span<const ObliqueLink> oblique() const { return oblique_; }
   /// The cell around a point; kNone outside the body.
   std::uint32_t at(const Vec3f& point) const;
+  /// Cells around a point and beside it along a plane, each once.
+  void find_around(const Vec3f& point, const Vec3f& normal, std::vector<std::uint32_t>& found) const;
 
  private:
   struct Builder;

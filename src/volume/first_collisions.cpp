@@ -13,7 +13,6 @@
 namespace opaline {
 namespace {
 
-constexpr float kAlongSheet = .9f;      // cells, from the plane of an exit to the cells around it
 constexpr double kSpread = 1.2;         // cells around an exit
 constexpr double kLeastAgreement = .5;  // least agreement of normals of one sheet
 constexpr int kMostReflections = 4;
@@ -170,18 +169,8 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
       sum += near * double(element.area);
     }
   };
-  const Vec3f below = Vec3f(at) - normal * .35f;
-  around_.clear();
-  for (const float x : {-1.f, 0.f, 1.f})
-    for (const float y : {-1.f, 0.f, 1.f})
-      for (const float z : {-1.f, 0.f, 1.f}) {
-        const Vec3f beside(x, y, z);
-        if (std::abs(dot(beside, normal)) > kAlongSheet) continue;
-        const std::uint32_t cell = space_.grid.at(below + beside);
-        if (cell == DiffusionGrid::kNone || std::ranges::find(around_, cell) != around_.end()) continue;
-        around_.push_back(cell);
-        add(cell);
-      }
+  space_.grid.find_around(Vec3f(at) - normal * .35f, normal, around_);
+  for (const std::uint32_t cell : around_) add(cell);
   if (spread_.empty()) {
     spread_.push_back({exit.element, 1});
     sum = double(space_.boundary.elements[exit.element].area);
