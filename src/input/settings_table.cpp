@@ -234,7 +234,8 @@ std::span<const Member<Settings>> settings_members() {
       member<&Settings::cell_size>(
           "cell_size", number, "mean free paths", {.05, 100}, "", {cells},
           "`volume_diffusion`: size of the cells at the surface, in mean free paths or, if shorter, in units "
-          "of 0.45 diffuse mean free paths, down to half of it in small bodies; smaller cells are slower and "
+          "of 0.45 diffuse mean free paths, down to a quarter of it in small bodies; smaller cells are "
+          "slower and "
           "more accurate"),
       member<&Settings::reenter>(
           "reenter", flag, "", kFiniteNumber, "", {walks},

@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kSpread = 1.2;         // cells around an exit
+constexpr double kSpread = 1.5;         // cells around an exit
 constexpr double kLeastAgreement = .5;  // least agreement of normals of one sheet
 constexpr int kMostReflections = 4;
 constexpr double kLeastReflected = .05;  // share of the flux at the first exit
