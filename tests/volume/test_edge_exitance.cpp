@@ -32,7 +32,7 @@ TEST(EdgeExitance, BoxAsWalked) {
   body.light({light});
   body.medium = kMilky;
   const Strip lit{body, 1, 4.5, 5}, beside_dark{body, 1, -5, -4.5};
-  const VolumeExitance walked = body.walked(7, .28);
+  const VolumeExitance walked = body.walked(7, .15);
   const double lit_walked = body.mean_where(walked, lit).value,
                beside_dark_walked = body.mean_where(walked, beside_dark).value;
   const VolumeExitance solved = diffused(body, grey(kMilky), light, .7);
