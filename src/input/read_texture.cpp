@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "image/texture_file.h"
@@ -73,10 +75,12 @@ Texture read_texture(const Value& value, TexturePart part) {
 }
 
 /// error outside the range of the value's row
-double checked(const Value& value, double number) {
+/// number: of all texels of the texture, scaled
+double checked(const Value& value, const Texture& texture, double number) {
   const Range& range = value.info().range;
   if (!(number >= range.low && number <= range.high))
-    value.fail("is out of range at every texel", "a texture and scale within the range of the key");
+    value.fail(fmt::format("is {:.4g} at every texel of {}, with its scale", number, texture.file->path()),
+               fmt::format("values from {:g} to {:g}", range.low, range.high));
   return number;
 }
 
@@ -88,7 +92,7 @@ void read_textured(const Value& value, double& number, std::optional<Texture>& t
   texture = read_texture(value, TexturePart::number);
   const std::optional<Texel>& constant = texture->file->constant();
   if (!constant) return;
-  number = checked(value, (*constant)[texture->channel] * texture->scale.x);
+  number = checked(value, *texture, (*constant)[texture->channel] * texture->scale.x);
   texture.reset();
 }
 
@@ -99,7 +103,8 @@ void read_textured(const Value& value, Vec3d& triple, std::optional<Texture>& te
   texture = read_texture(value, is_color ? TexturePart::color : TexturePart::triple);
   const std::optional<Texel>& constant = texture->file->constant();
   if (!constant) return;
-  for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, (*constant)[c] * texture->scale[c]);
+  for (std::size_t c = 0; c < 3; ++c)
+    triple[c] = checked(value, *texture, (*constant)[c] * texture->scale[c]);
   texture.reset();
 }
 

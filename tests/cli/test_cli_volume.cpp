@@ -189,7 +189,7 @@ TEST(CliVolume, CellsLeaveOpenMeshesToProfiles) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_EQ(contains(outcome.err,
                        "leaf: its mesh is open (4 boundary edges) and encloses no volume; "
-                       "uses hierarchical evaluation instead of volume_diffusion"),
+                       "uses hierarchical evaluation instead of volume_diffusion; use a closed shape"),
               method != "hierarchical")
         << outcome.err;
     return read_image(folder.file("a.exr")).pixels;

@@ -98,7 +98,7 @@ TEST(TargetVolume, SaysTheLeast) {
   EXPECT_GT(*chosen.model, *session.plan().groups[0].model.expected_error_of_diffusion);
   EXPECT_GT(chosen.promised, *chosen.model);
   EXPECT_LE(chosen.predicted, chosen.promised);
-  EXPECT_GT(session.scene().settings.cell_size, 1);
+  EXPECT_GT(session.scene().settings.cell_size, .5);
 }
 
 // Claim: shadow rays are added until they change nothing that counts, where a light has an extent, and only there. Fails

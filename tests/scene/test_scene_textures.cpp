@@ -147,6 +147,15 @@ TEST(SceneTextures, TexelsOutOfRangeAreNamedInTheScene) {
   expect_fragments(error, {"big.exr", "scene.json", "pixel (3, 1) is not finite or above 1e30: -2e+30"});
 }
 
+// Claim: a constant texture outside the range is an error naming the value, the image and the range. Fails if: only the key is
+// named.
+TEST(SceneTextures, ConstantOutOfRangeIsNamed) {
+  const TextureFolder files;
+  test::put_exr(files.folder.file("even.exr"), 4, 2, [](int, int) { return std::array<double, 3>{3, 3, 3}; });
+  expect_fragments(files.error(shape(R"("reflectance": {"texture": "even.exr"})")),
+                   {"is 3 at every texel of", "even.exr", "values from 0 to 1"});
+}
+
 // Claim: colours above 1, rendered as 1, are one warning by their number and the largest; those that a scale brings below 1, and
 // those over a mean, are not. Fails if a reflectance of 40 is rendered as 1 in silence.
 TEST(SceneTextures, ColoursAboveOneAreAWarning) {

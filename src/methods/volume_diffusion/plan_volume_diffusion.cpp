@@ -40,13 +40,17 @@ std::string reason_against_cells(const Scene& scene, const World& world, const B
 /// Warns if closing the mesh would make cells applicable to the body.
 void warn_of_open_mesh(const Scene& scene, const BodyPlan& body, std::vector<std::string>& warnings) {
   if (body.thickness > 0 || !(body.smallest_mean_free_path > 0)) return;
+  const auto file_of = [&](std::uint32_t mesh) { return std::get_if<MeshFile>(&scene.shapes[mesh].source); };
+  const bool is_built_in = std::ranges::none_of(body.meshes, file_of);
   const bool is_filled = std::ranges::all_of(body.meshes, [&](std::uint32_t mesh) {
-    const auto* file = std::get_if<MeshFile>(&scene.shapes[mesh].source);
+    const MeshFile* const file = file_of(mesh);
     return file != nullptr && file->fill_holes.value_or(false);
   });
   warnings.push_back(body.name + ": " + body.reason_against_method +
-                     "; uses hierarchical evaluation instead of volume_diffusion; close " +
-                     (is_filled ? "the holes that fill_holes cannot close" : "the mesh (fill_holes)"));
+                     "; uses hierarchical evaluation instead of volume_diffusion; " +
+                     (is_built_in ? "use a closed shape, such as a slab"
+                      : is_filled ? "close the holes that fill_holes cannot close"
+                                  : "close the mesh (fill_holes)"));
 }
 
 /// CPU seconds to trace the light transmitted at a sample from one direction.
