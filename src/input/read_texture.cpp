@@ -79,7 +79,8 @@ Texture read_texture(const Value& value, TexturePart part) {
 double checked(const Value& value, const Texture& texture, double number) {
   const Range& range = value.info().range;
   if (!(number >= range.low && number <= range.high))
-    value.fail(fmt::format("is {:.4g} at every texel of {}, with its scale", number, texture.file->path()),
+    value.fail(fmt::format("is out of range: {:.4g} at every texel of {}, with its scale", number,
+                           texture.file->path()),
                fmt::format("values from {:g} to {:g}", range.low, range.high));
   return number;
 }

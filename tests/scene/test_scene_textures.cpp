@@ -153,7 +153,7 @@ TEST(SceneTextures, ConstantOutOfRangeIsNamed) {
   const TextureFolder files;
   test::put_exr(files.folder.file("even.exr"), 4, 2, [](int, int) { return std::array<double, 3>{3, 3, 3}; });
   expect_fragments(files.error(shape(R"("reflectance": {"texture": "even.exr"})")),
-                   {"is 3 at every texel of", "even.exr", "values from 0 to 1"});
+                   {"is out of range: 3 at every texel of", "even.exr", "values from 0 to 1"});
 }
 
 // Claim: colours above 1, rendered as 1, are one warning by their number and the largest; those that a scale brings below 1, and
