@@ -195,8 +195,7 @@ std::vector<RgbF> DiffusionBody::at_samples(std::span<const RgbF> values) const 
   constexpr float kRadius = 1.2f;  // cells
   constexpr float kLeastAgreement = .5f;
   std::vector<RgbF> result(samples_.size());
-  // Cells of twice the size are for errors and for light that is smooth.
-  const bool is_finer = edges_ != nullptr && 2 * samples_.size() > 3 * values.size();
+  const bool is_finer = 2 * samples_.size() > 3 * values.size();
   parallel_chunks(result.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
     std::vector<std::uint32_t> around;
     for (std::size_t s = begin; s < end; ++s) {
