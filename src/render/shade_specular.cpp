@@ -58,6 +58,22 @@ bool may_be_lit(std::span<const Light> lights, const SurfacePoint& point) {
   });
 }
 
+/// Irradiance by all lights, without shadows.
+RgbF unshadowed_irradiance(std::span<const Light> lights, const SurfacePoint& point) {
+  constexpr int kSamples = 4;  // per light that is not a point
+  Rgb sum{};
+  for (const Light& light : lights) {
+    const int samples = is_delta(light) ? 1 : kSamples;
+    for (int s = 0; s < samples; ++s) {
+      const LightSample sample =
+          sample_light(light, point.position, point.normal, r2_point(std::uint64_t(s), {.5, .5}), samples);
+      const double cosine = double(std::max(0.f, dot(sample.direction, point.normal)));
+      sum += emission(light) * (double(sample.weight) * cosine / samples);
+    }
+  }
+  return RgbF(sum);
+}
+
 void add_hit(const SurfaceHits& hits, std::size_t i, SurfaceHits& to) {
   to.points.push_back(hits.points[i]);
   to.hits.push_back(hits.hits[i]);
@@ -133,6 +149,7 @@ std::vector<PixelSample> Shader::seen_along(std::span<const TracedRay> rays,
 
 void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch) const {
   constexpr float kInversePi = std::numbers::inv_pi_v<float>;
+  constexpr float kDark = .1f;  // albedo
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
     const bool is_plain = hits.textures.empty();
     const Appearance textured = is_plain ? Appearance{} : appearance_of(hits, i);
@@ -144,9 +161,13 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
     // Without an irradiance in the field, it follows from the exitance: outgoing light over that of uniform
     // illumination. Light leaving a face in shadow may come from inside alone.
     const float leaving = appearance.translucent ? 1 - appearance.reflectance(cosine) : 0;
-    if (arriving == RgbF{} && leaving > 0 && may_be_lit(lights_, hits.points[i]))
+    if (arriving == RgbF{} && leaving > 0 && may_be_lit(lights_, hits.points[i])) {
       for (std::size_t c = 0; c < 3; ++c)
         if (appearance.albedo[c] > 0) arriving[c] = sample.diffuse[c] / (leaving * appearance.albedo[c]);
+      // Dark media may send out light that has crossed them, many times their albedo.
+      if (min_component(appearance.albedo) < kDark)
+        arriving = component_min(arriving, unshadowed_irradiance(lights_, hits.points[i]) * kInversePi);
+    }
     sample.specular += arriving * appearance.mirrored_share(cosine);
   }
 }

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "transport/smooth_boundary.h"
+
 namespace opaline {
 
 ElementsOfCells::ElementsOfCells(const Lattice& lattice, const DiffusionGrid& grid, const Boundary& boundary,
@@ -75,6 +77,12 @@ std::optional<BodyPaths::Exit> BodyPaths::exit_at(const Way& way, double length,
                 std::max(kLeastCosine, dot(way.along, normal)) * cell;
   exit.length = std::clamp(exit.length, least, std::max(least, length + cell));
   return exit;
+}
+
+BodyPaths::Reflection BodyPaths::reflected(const Way& way, const Exit& exit) const {
+  const Vec3d normal(space_.boundary.elements[exit.element].normal);
+  const double cosine = std::clamp(dot(way.along, normal), kLeastCosine, 1.);
+  return {{at(way, exit.length), mirrored(way.along, normal)}, inside_reflectance(cosine, space_.eta())};
 }
 
 }  // namespace opaline

@@ -53,6 +53,24 @@ struct DiffusionSpace {
   Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }
 };
 
+/// Calls visit(element, weight) for the elements around a place on the surface, on the same sheet, with weights falling to
+/// 0 at 1.5 cells.
+/// cells: reused memory
+template <class Visit>
+void for_each_beside(const DiffusionSpace& space, const Vec3d& place, const Vec3f& normal,
+                     std::vector<std::uint32_t>& cells, const Visit& visit) {
+  constexpr double kReach = 1.5;          // cells
+  constexpr float kLeastAgreement = .5f;  // cosine between normals of one sheet
+  space.grid.find_around(Vec3f(place) - normal * .35f, normal, cells);
+  for (const std::uint32_t cell : cells)
+    for (const std::uint32_t e : space.elements_of.of(cell)) {
+      const BoundaryElement& element = space.boundary.elements[e];
+      const Vec3d apart = space.in_lattice(element.position) - place;
+      const double near = 1 - dot(apart, apart) / (kReach * kReach);
+      if (near > 0 && dot(element.normal, normal) > kLeastAgreement) visit(e, near);
+    }
+}
+
 /// Straight path inside a body: an origin, in lattice units, and a unit direction. Lengths: world units.
 struct Way {
   Vec3d from, along;
@@ -69,6 +87,11 @@ class BodyPaths {
     double length;
     std::uint32_t element;  ///< nearest boundary element
     std::uint32_t cell;     ///< last cell
+  };
+  /// A path's part reflected at its exit.
+  struct Reflection {
+    Way way;
+    double reflectance;
   };
   /// End of a path: at the surface, or without an exit found.
   struct End {
@@ -99,6 +122,8 @@ class BodyPaths {
     }
     return {{}, cell};
   }
+
+  Reflection reflected(const Way& way, const Exit& exit) const;
 
  private:
   std::uint32_t nearest_left(const Way& way, const Vec3d& about, std::uint32_t cell,

@@ -16,18 +16,23 @@ namespace {
 constexpr std::size_t kFactors = 33;
 constexpr double kMostAlbedo = 1 - 1e-9;  // beyond, fractions are 1 to rounding for any boundary
 
-// In the fluence of diffusion, C e^-kz + S e^-pz, of light entering at one cosine, and in a linear one.
+/// Integral over the cosines outside, weighted by cosine and transmittance, of a function of the cosine inside.
+template <class Function>
+double entering_integral(double eta, const Function& of_inside) {
+  const auto entering = [&](double outside) {
+    return outside * (1 - fresnel_reflectance(outside, eta)) * of_inside(refracted_cosine(outside, 1 / eta));
+  };
+  return boost::math::quadrature::gauss<double, 30>::integrate(entering, 0., 1.);
+}
+
+// By the fluence of diffusion of light entering at one cosine, two exponentials, and of light from afar, linear.
 CalibratedMedium::Emission emission_of(double albedo, double eta, double mismatch, const HalfSpace& exact) {
-  constexpr double kOutside = .7;        // cosine of entry, of which the results hardly depend
+  constexpr double kOutside = .7;        // cosine of entry, with little effect
   constexpr double kDiffusion = 1. / 3;  // all lengths in mean free paths
   const double entry = refracted_cosine(kOutside, 1 / eta), decay = std::sqrt(3 * (1 - albedo));
   const double source = 1 / entry + (std::abs(1 / entry - decay) < 1e-3 ? 2e-3 : 0);
   const auto emitted = [&](const auto& of_cosine) {
-    const auto along = [&](double outside) {
-      return outside * (1 - fresnel_reflectance(outside, eta)) *
-             of_cosine(refracted_cosine(outside, 1 / eta));
-    };
-    return albedo / (2 * eta * eta) * boost::math::quadrature::gauss<double, 30>::integrate(along, 0., 1.);
+    return albedo / (2 * eta * eta) * entering_integral(eta, of_cosine);
   };
   const auto of_exponential = [&](double rate) {
     return emitted([&](double cosine) { return 1 / (1 + rate * cosine); });
@@ -51,13 +56,8 @@ CalibratedMedium::CalibratedMedium(const HomogeneousMedium& medium)
   const double used = std::min(albedo, kMostAlbedo);
   const double decay = std::sqrt(3 * (1 - used));  // per mean free path
   const HalfSpace exact(1 - used, eta);
-  // Mean of 1 / (1 + decay cosine) over uniform incident light, by cosines outside.
-  const auto entering = [&](double outside) { return outside * (1 - fresnel_reflectance(outside, eta)); };
-  const auto spread = [&](double outside) {
-    return entering(outside) / (1 + decay * refracted_cosine(outside, 1 / eta));
-  };
-  using Gauss = boost::math::quadrature::gauss<double, 30>;
-  const double mean = Gauss::integrate(spread, 0., 1.) / Gauss::integrate(entering, 0., 1.);
+  const double mean = entering_integral(eta, [&](double inside) { return 1 / (1 + decay * inside); }) /
+                      entering_integral(eta, [](double) { return 1.; });
   mismatch = std::max(.5, (used * mean / exact.diffuse_share() - 1) * 3 / (2 * decay));
   least_cosine_ = eta > 1 ? std::sqrt(1 - 1 / (eta * eta)) : 0;
   std::vector<double> factors;

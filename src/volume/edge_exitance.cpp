@@ -17,18 +17,14 @@ constexpr double kWeight = 6;       // per fraction of light from another part o
 constexpr double kLeastLeft = .02;  // share of a path to follow
 constexpr double kLeastReflected = .05;
 constexpr double kLeastWeight = .1;
-constexpr double kOfThin = 4;  // subtracted, per share of light from an opposite sheet
-constexpr int kLegs = 2;       // pieces of a path, reflected at the surface once
-constexpr std::size_t kPaths = 10, kOfRing = 5;
+constexpr double kOfThin = 4;   // subtracted, per share of light from an opposite sheet
+constexpr int kLegs = 2;        // pieces of a path, reflected at the surface once
 constexpr double kOfNode = .5;  // light of a path at one place, sum of the channels
 
-/// Direction outside, with the probability of its cosine: in rings.
-Vec3d outside_direction(std::size_t i, std::size_t of_ring, const Vec3d& x, const Vec3d& y,
-                        const Vec3d& normal) {
-  const std::size_t rings = kPaths / of_ring, ring = i / of_ring;
-  const double square = (double(ring) + .5) / double(rings), sine = std::sqrt(square);
-  const double angle = 2 * std::numbers::pi * (double(i % of_ring) + .5) / double(of_ring);
-  return x * (sine * std::cos(angle)) + y * (sine * std::sin(angle)) + normal * std::sqrt(1 - square);
+std::array<Vec3d, 3> frame_of(const Vec3f& normal) {
+  std::array<Vec3d, 3> frame{Vec3d{}, Vec3d{}, Vec3d(normal)};
+  tangent_frame(frame[2], frame[0], frame[1]);
+  return frame;
 }
 
 /// True if two elements are in one plane.
@@ -43,6 +39,16 @@ EdgeExitance::EdgeExitance(const DiffusionSpace& space) : space_(space), paths_(
   for (const std::array<CalibratedMedium, 3>& media : space.media)
     for (const CalibratedMedium& medium : media)
       if (medium.albedo > 0) longest_ = std::max(longest_, 1 / medium.extinction);
+  // Outside, two rings with the probability of their cosine.
+  for (std::size_t k = 0; k < kPaths; ++k) {
+    const double square = (double(k / kOfRing) + .5) * kOfRing / kPaths, cosine = std::sqrt(1 - square);
+    const double angle = 2 * std::numbers::pi * (double(k % kOfRing) + .5) / kOfRing,
+                 sine = std::sqrt(square);
+    const Vec3d outward(sine * std::cos(angle), sine * std::sin(angle), cosine);
+    directions_[k] = {refracted_inward(-outward, {0, 0, 1}, space_.eta()),
+                      (1 - fresnel_reflectance(cosine, space_.eta())) / double(kPaths)};
+    seen_ += directions_[k].share;
+  }
   if (!space.varies()) {
     step_ = BodyPaths::kStep * space.lattice.cell;
     absorbed_ = absorbed_in(step_, 0);
@@ -53,6 +59,12 @@ EdgeExitance::EdgeExitance(const DiffusionSpace& space) : space_(space), paths_(
   });
   for (std::size_t s = 0; s < space.samples.size(); ++s)
     if (is_near[element_of(s)] != 0) samples_.push_back(std::uint32_t(s));
+}
+
+Way EdgeExitance::path_from(const BoundaryElement& from, const std::array<Vec3d, 3>& frame,
+                            std::size_t path) const {
+  const Vec3d& inward = directions_[path].inward;
+  return {space_.in_lattice(from.position), frame[0] * inward.x + frame[1] * inward.y + frame[2] * inward.z};
 }
 
 bool EdgeExitance::has_own_sheet_only(const BoundaryElement& from, const Vec3d& position) const {
@@ -68,12 +80,9 @@ bool EdgeExitance::is_near_other_sheet(std::size_t element) const {
   if (cell == DiffusionGrid::kNone) return false;
   const BoundaryElement& from = space_.boundary.elements[element];
   const double farthest = kFarthest * longest_;
-  const Vec3d normal(from.normal);
-  Vec3d x, y;
-  tangent_frame(normal, x, y);
+  const std::array<Vec3d, 3> frame = frame_of(from.normal);
   for (std::size_t k = kPaths - kOfRing; k < kPaths; ++k) {
-    const Vec3d outward = outside_direction(k, kOfRing, x, y, normal);
-    const Way way{space_.in_lattice(from.position), refracted_inward(-outward, normal, space_.eta())};
+    const Way way = path_from(from, frame, k);
     if (std::ranges::all_of(std::array{1. / 3, 2. / 3, 1.}, [&](double part) {
           return has_own_sheet_only(from, paths_.at(way, part * farthest));
         }))
@@ -105,16 +114,11 @@ void EdgeExitance::follow(std::size_t sample, Paths& paths) const {
   paths.nodes.clear();
   paths.sheets.assign(1, element_of(sample));
   paths.beside = paths.opposite = {};
-  const Vec3d normal(from.normal);
-  Vec3d x, y;
-  tangent_frame(normal, x, y);
-  double all = 0;
+  const std::array<Vec3d, 3> frame = frame_of(from.normal);
   for (std::size_t k = 0; k < kPaths; ++k) {
-    const Vec3d outward = outside_direction(k, kOfRing, x, y, normal);
-    const double weight = (1 - fresnel_reflectance(dot(outward, normal), space_.eta())) / double(kPaths);
-    all += weight;
+    const double weight = directions_[k].share;
     Rgb left(weight);
-    Way way{space_.in_lattice(from.position), refracted_inward(-outward, normal, space_.eta())};
+    Way way = path_from(from, frame, k);
     std::uint32_t cell = cell_of(sample);
     for (int leg = 0; leg < kLegs && max_component(left) > kLeastLeft * weight; ++leg) {
       Rgb emitted{};
@@ -142,15 +146,14 @@ void EdgeExitance::follow(std::size_t sample, Paths& paths) const {
       if (leg == 0 && agreement_there < kSameSheet)
         (agreement_there > -kSameSheet ? paths.beside : paths.opposite) += left;
       add_sheet(end.exit->element, paths);
-      const Vec3d other(space_.boundary.elements[end.exit->element].normal);
-      const double cosine = std::clamp(dot(way.along, other), BodyPaths::kLeastCosine, 1.);
-      left *= inside_reflectance(cosine, space_.eta());
-      way = {paths_.at(way, end.exit->length), mirrored(way.along, other)};
+      const auto [further, reflectance] = paths_.reflected(way, *end.exit);
+      left *= reflectance;
+      way = further;
       cell = end.exit->cell;
     }
   }
-  paths.beside = paths.beside / all;
-  paths.opposite = paths.opposite / all;
+  paths.beside = paths.beside / seen_;
+  paths.opposite = paths.opposite / seen_;
 }
 
 // Entry, through a sheet, of light reaching a position: by the plane of its element, then by that of the element found

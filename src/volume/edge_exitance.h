@@ -88,8 +88,19 @@ class EdgeExitance {
   std::uint32_t element_of(std::size_t sample) const { return space_.boundary.of_sample[sample]; }
   std::uint32_t cell_of(std::size_t sample) const { return space_.attached[element_of(sample)].cell; }
 
+  /// Direction inwards of a path, with the normal along z outwards, and the share of the light seen by it.
+  struct Direction {
+    Vec3d inward;
+    double share;
+  };
+  static constexpr std::size_t kPaths = 10, kOfRing = 5;
+
+  Way path_from(const BoundaryElement& from, const std::array<Vec3d, 3>& frame, std::size_t path) const;
+
   DiffusionSpace space_;
   BodyPaths paths_;
+  std::array<Direction, kPaths> directions_;
+  double seen_ = 0;     // sum of their shares
   double longest_ = 0;  // mean free path
   double step_ = 0;     // in the smallest cells of a homogeneous medium
   Rgb absorbed_{};      // share, in such a step

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions of the light that enters a boundary element, as few as its smoothness allows.
+// Directions of light entering a boundary element, as few as its smoothness allows.
 #pragma once
 
 #include <array>
@@ -36,12 +36,11 @@ class EntryDirections {
 /// in    eta: relative index of refraction; i: index of the element, for directions different at neighbouring ones
 EntryDirections towards_light(const Light& light, const BoundaryElement& element, double eta, std::size_t i);
 
-/// Directions of uniform light, different at neighbouring elements, and more for an element that receives more than
-/// the mean.
+/// Directions of uniform light, different at neighbouring elements, and more for elements brighter than the mean.
 class EvenDirections {
  public:
-  /// in    flux: transmitted uniform light of each element, W; beside: light that leaves the body by other lights, W; the
-  ///       more there is, the fewer directions are needed
+  /// in    flux: transmitted uniform light of each element, W; beside: light leaving the body by other lights, W, which
+  ///       hides noise
   EvenDirections(std::span<const Rgb> flux, const Rgb& beside);
   /// in    flux: of this element; others as for towards_light
   EntryDirections at(const BoundaryElement& element, double eta, const Rgb& flux, std::size_t i) const;

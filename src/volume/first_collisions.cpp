@@ -13,8 +13,6 @@
 namespace opaline {
 namespace {
 
-constexpr double kSpread = 1.5;         // cells around an exit
-constexpr double kLeastAgreement = .5;  // least agreement of normals of one sheet
 constexpr int kMostReflections = 4;
 constexpr double kLeastReflected = .05;  // share of the flux at the first exit
 constexpr double kFarthest = 4;          // free paths; longer flights end there
@@ -159,18 +157,10 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
   spread_.clear();
   const Vec3f normal = space_.boundary.elements[exit.element].normal;
   double sum = 0;
-  const auto add = [&](std::uint32_t cell) {
-    for (const std::uint32_t e : space_.elements_of.of(cell)) {
-      const BoundaryElement& element = space_.boundary.elements[e];
-      const Vec3d apart = space_.in_lattice(element.position) - at;
-      const double near = 1 - dot(apart, apart) / (kSpread * kSpread);
-      if (!(near > 0 && dot(element.normal, normal) > kLeastAgreement)) continue;
-      spread_.push_back({e, near});
-      sum += near * double(element.area);
-    }
-  };
-  space_.grid.find_around(Vec3f(at) - normal * .35f, normal, around_);
-  for (const std::uint32_t cell : around_) add(cell);
+  for_each_beside(space_, at, normal, around_, [&](std::uint32_t e, double weight) {
+    spread_.push_back({e, weight});
+    sum += weight * double(space_.boundary.elements[e].area);
+  });
   if (spread_.empty()) {
     spread_.push_back({exit.element, 1});
     sum = double(space_.boundary.elements[exit.element].area);
@@ -183,14 +173,12 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
 void Depositor::leave(Way way, Exit exit, std::size_t i, Rgb flux) {
   const double least = kLeastReflected * max_component(flux);
   for (int reflections = 1;; ++reflections) {
-    const Vec3d normal(space_.boundary.elements[exit.element].normal), place = paths_.at(way, exit.length);
-    const double reflectance =
-        inside_reflectance(std::clamp(dot(way.along, normal), BodyPaths::kLeastCosine, 1.), space_.eta());
-    spread(place, exit);
+    const auto [further, reflectance] = paths_.reflected(way, exit);
+    spread(further.from, exit);
     for (const auto& [element, per_area] : spread_)
       result_.uncollided[element] += RgbF(flux * ((1 - reflectance) * per_area));
     flux *= reflectance;
-    way = {place, mirrored(way.along, normal)};
+    way = further;
     const std::array<CalibratedMedium, 3>& media = space_.media_of(exit.cell);
     Rgb colliding{};
     for (std::size_t c = 0; c < 3; ++c) colliding[c] = flux[c] * (space_.varies() ? 1 : media[c].albedo);
