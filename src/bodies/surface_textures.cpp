@@ -14,8 +14,14 @@
 namespace opaline {
 namespace {
 
+bool maps_uvs_unchanged(const Texture& texture) {
+  return texture.uv_offset == std::array<double, 2>{0, 0} &&
+         texture.uv_scale == std::array<double, 2>{1, 1} && texture.uv_rotation == 0;
+}
+
 /// UVs count from the lower left corner, textures from the upper left one.
-TexturePlace texture_place(const Texture& texture, const SurfaceUv& at, const Footprint& footprint) {
+TexturePlace texture_place(const Texture& texture, const SurfaceUv& at, const Footprint& footprint,
+                           bool on_whole_face = false) {
   const double angle = texture.uv_rotation * std::numbers::pi / 180;
   const double cosine = std::cos(angle), sine = std::sin(angle);
   const auto turned = [&](double u, double v) {
@@ -28,11 +34,11 @@ TexturePlace texture_place(const Texture& texture, const SurfaceUv& at, const Fo
   };
   const auto [u, v] = turned(double(at.uv[0]), 1 - double(at.uv[1]));
   return {float(u + texture.uv_offset[0]), float(v + texture.uv_offset[1]), side(footprint.x),
-          side(footprint.y)};
+          side(footprint.y), on_whole_face && maps_uvs_unchanged(texture)};
 }
 
 std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Place& place) {
-  return texture.file->at(texture_place(texture, *place.uv, place.footprint));
+  return texture.file->at(texture_place(texture, *place.uv, place.footprint, place.on_whole_face));
 }
 
 RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
@@ -114,8 +120,8 @@ void map_normal(const Texture& texture, const SurfaceTextures::Place& place, Sur
 
 /// Height gradient of the height over the surface, mm per world unit.
 Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
-  const auto [along_u, along_v] =
-      texture.file->slope(texture_place(texture, *place.uv, place.footprint), texture.channel);
+  const auto [along_u, along_v] = texture.file->slope(
+      texture_place(texture, *place.uv, place.footprint, place.on_whole_face), texture.channel);
   // Angle of the image's u and v, by the mesh's.
   const double angle = texture.uv_rotation * std::numbers::pi / 180;
   const double cosine = std::cos(angle), sine = std::sin(angle);
@@ -176,6 +182,9 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world
     own.grain = grain_of(scene, shape);
     own.has_uv = uvs_of(scene, shape) != MeshUvs::unread && !world.meshes[m].uvs.empty();
     own.has_tangents = !world.meshes[m].tangents.empty();
+    own.has_whole_faces = std::holds_alternative<QuadShape>(shape.source) ||
+                          std::holds_alternative<BoxShape>(shape.source) ||
+                          std::holds_alternative<SlabShape>(shape.source);
     is_empty_ = is_empty_ && !own.has_tint && !needs_uvs(scene, shape) && own.grain == nullptr &&
                 own.partly_opaque == nullptr;
     for (const Texture* texture : textures_of(scene, shape))
@@ -190,6 +199,7 @@ bool SurfaceTextures::tints_entering(std::uint32_t mesh) const {
 SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t triangle, float u, float v,
                                               const Footprint& footprint) const {
   Place place{mesh, {}, footprint};
+  place.on_whole_face = of_mesh_[mesh].has_whole_faces;
   if (of_mesh_[mesh].has_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
   if (of_mesh_[mesh].has_tangents) place.tangent = surface_tangent(world_.meshes[mesh], triangle, u, v);
   if (of_mesh_[mesh].has_colors) place.color = surface_color(world_.meshes[mesh], triangle, u, v);
@@ -299,7 +309,7 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
   const bool has_tint = medium.tint != Rgb(1) || has_texture || medium.weight_texture ||
                         std::ranges::any_of(meshes, has_colors);
   if (medium.texture_mix == TextureMix::post || !has_tint) return {};
-  KeyBuilder key("entering tint", 1);
+  KeyBuilder key("entering tint", 2);
   key.add(samples).add(medium.tint).add(medium.texture_mix);
   for (const std::uint32_t m : meshes)
     if (has_colors(m))
@@ -314,7 +324,7 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
 StageKey medium_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes) {
   if (!varies_inside(medium)) return {};
   const auto& mean = std::get<ArtistMedium>(medium.coefficients);
-  KeyBuilder key("medium inside", 2);
+  KeyBuilder key("medium inside", 3);
   key.add(mean.subsurface_color).add(mean.subsurface_radius).add(mean.anisotropy).add(medium.eta);
   key.add(profile_kind(medium)).add(profile_thickness(medium));
   if (has_color_inside(medium)) add_to_key(key.add(std::string("color")), *medium.tint_texture);

@@ -47,9 +47,10 @@ class SurfaceTextures {
     std::uint32_t mesh;
     std::optional<SurfaceUv> uv;  ///< none: not needed, or missing in the mesh
     Footprint footprint;
-    Tangent tangent{};         ///< tangent of the mesh, world units; zero: missing
-    RgbF color{1, 1, 1};       ///< color of the mesh's vertices
-    bool from_behind = false;  ///< the normals are flipped: the back of a sheet is visible
+    Tangent tangent{};           ///< tangent of the mesh, world units; zero: missing
+    RgbF color{1, 1, 1};         ///< color of the mesh's vertices
+    bool from_behind = false;    ///< the normals are flipped: the back of a sheet is visible
+    bool on_whole_face = false;  ///< on a flat face with UVs from 0 to 1
   };
   Place place(std::uint32_t mesh, std::uint32_t triangle, float u, float v, const Footprint& footprint) const;
 
@@ -71,7 +72,7 @@ class SurfaceTextures {
                   *color_inside = nullptr, *radius_inside = nullptr;
     Rgb factor{1, 1, 1};               ///< times the tint's texture
     double at_entry = 0, at_exit = 1;  ///< exponents of the tint
-    bool has_tint = false, has_uv = false, has_tangents = false, has_colors = false;
+    bool has_whole_faces = false, has_tint = false, has_uv = false, has_tangents = false, has_colors = false;
     const Grain* grain = nullptr;
     const Medium* partly_opaque = nullptr;
   };

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -92,10 +93,13 @@ std::string marble_text(const Scene& scene, const World& world) {
   constexpr double kHandful = 50;  // mm
   constexpr double kMuch = 500;    // mm: a thousand mean free paths of marble
   const Shape& shape = scene.shapes[0];
-  // OBJ files have no unit: a figurine in metres is as large as a person, and its size decides its
-  // translucency.
+  // OBJ, PLY and OFF files have no unit: a figurine in metres is as large as a person, and its size decides
+  // its translucency. STL files are in mm by custom.
   const double diagonal = world.diagonal * world.unit;
-  const bool is_unitless = scene.file.ends_with(".obj") && scene.mm_per_unit == 1;
+  const bool is_unitless =
+      scene.mm_per_unit == 1 &&
+      std::ranges::any_of(std::array{".obj", ".ply", ".off"},
+                          [&](const char* extension) { return scene.file.ends_with(extension); });
   const bool has_lights = std::ranges::any_of(scene.lights, is_delta);  // brightness depends on the unit
   const bool has_unit = !(diagonal > 0) || !(is_unitless || (diagonal > kMuch && !has_lights));
   return fmt::format(

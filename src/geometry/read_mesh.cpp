@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/read_mesh.h"
 
+#include <cmath>
 #include <filesystem>
 
 #include "core/input_file.h"
@@ -50,6 +51,20 @@ void require_indexable(const std::string& path, const SourceMesh& mesh) {
     throw bad_file(path, "the mesh is too large", "at most 2^30 vertices and triangles");
 }
 
+/// Such UVs become 0, with a warning.
+void clear_uvs_not_finite(const std::string& path, SourceMesh& mesh) {
+  std::size_t corners = 0;
+  for (CornerUvs& uvs : mesh.uvs)
+    for (std::array<float, 2>& uv : uvs)
+      if (!std::isfinite(uv[0]) || !std::isfinite(uv[1])) {
+        uv = {};
+        ++corners;
+      }
+  if (corners > 0)
+    mesh.warnings.push_back(path + ": UVs not finite at " + std::to_string(corners) + " of " +
+                            std::to_string(3 * mesh.uvs.size()) + " corners of triangles are taken as 0");
+}
+
 }  // namespace
 
 std::string read_mesh_bytes(const std::string& path) {
@@ -85,6 +100,7 @@ SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs u
   std::string bytes = read_mesh_bytes(path);
   SourceMesh mesh = part.empty() ? format->read(path, bytes, uvs) : format->read_part(path, part, bytes, uvs);
   require_indexable(path, mesh);
+  clear_uvs_not_finite(path, mesh);
   join_seams(mesh);
   return mesh;
 }

@@ -19,6 +19,7 @@ namespace opaline {
 struct TexturePlace {
   float u = 0, v = 0;
   std::array<float, 2> side_x{}, side_y{};
+  bool ends_at_edges = false;  ///< the image is not repeated: filters use its border beyond its edges
 };
 
 /// Memory for reading a whole texture, bytes.

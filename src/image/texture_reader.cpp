@@ -204,7 +204,7 @@ class OiioPicture : public CachedPicture {
   }
 
   std::array<float, 4> at(const TexturePlace& place) const override {
-    OIIO::TextureOpt options = options_;
+    OIIO::TextureOpt options = options_at(place);
     std::array<float, 4> texel{};
     if (!texture_system().texture(handle_, texture_system().get_perthread_info(), options, place.u, place.v,
                                   place.side_x[0], place.side_x[1], place.side_y[0], place.side_y[1],
@@ -217,7 +217,7 @@ class OiioPicture : public CachedPicture {
 
   // Cubic splines between the texels of every size, for continuous slopes.
   std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const override {
-    OIIO::TextureOpt options = options_;
+    OIIO::TextureOpt options = options_at(place);
     options.interpmode = OIIO::TextureOpt::InterpBicubic;
     std::array<float, 4> texel{}, along_u{}, along_v{};
     if (!texture_system().texture(handle_, texture_system().get_perthread_info(), options, place.u, place.v,
@@ -288,6 +288,12 @@ class OiioPicture : public CachedPicture {
       add(OIIO::Strutil::fmt::format(
           "{} of {} texels have a negative colour, rendered as 0; the lowest is {:.3g}", range_->negative,
           spec.image_pixels(), range_->lowest));
+  }
+
+  OIIO::TextureOpt options_at(const TexturePlace& place) const {
+    OIIO::TextureOpt options = options_;
+    if (place.ends_at_edges) options.swrap = options.twrap = OIIO::TextureOpt::WrapClamp;
+    return options;
   }
 
   [[noreturn]] void fail() const {

@@ -36,15 +36,16 @@ struct MediumExtremes {
 };
 
 /// Expected error: a base value, plus terms for thin bodies and dark media.
-struct ErrorPlane {
+struct ErrorTerms {
   double base, thin, dark;
+  double power = 1;  ///< exponent of the thickness, mean free paths
   double at(double mean_free_paths, const MediumExtremes& medium) const {
-    return std::min(1., base + thin / mean_free_paths + dark * medium.absorbed);
+    return std::min(1., base + thin / std::pow(mean_free_paths, power) + dark * medium.absorbed);
   }
 };
-// Fitted to the table of bench_volume_models.
-constexpr ErrorPlane kErrorOfBodies{.05, .9, .5}, kErrorOfPlates{.07, .25, .55},
-    kErrorOfDiffusion{.0254, 0, .143};
+// Fitted to the table of bench_volume_models; `thin` of diffusion to bodies lit from behind.
+constexpr ErrorTerms kErrorOfBodies{.05, .9, .5}, kErrorOfPlates{.07, .25, .55},
+    kErrorOfDiffusion{.0254, .04, .143, 2};
 
 constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 

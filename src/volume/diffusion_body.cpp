@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "volume/crossing_light.h"
 #include "volume/diffusion_solver.h"
 
 namespace opaline {
@@ -176,18 +177,49 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
   Solution solution;
   for (const Channels& source : collisions.source)
     for (std::size_t c = 0; c < 3; ++c) solution.entered[c] += double(source.c[c]);
+  take_uncollided(light, collisions, solution, monitor);
   problem.source = std::move(collisions.source);
   std::vector<Channels> rough = solve_diffusion(problem, kRough, std::move(start), monitor).fluence;
   add_oblique_flow(problem, rough);
   solution.fluence = solve_diffusion(problem, kTolerance, std::move(rough), monitor).fluence;
-  for (std::size_t i = 0; i < attached_.size(); ++i) {
-    const Rgb direct =
-        Rgb(collisions.uncollided[i] + collisions.at_once[i]) * double(boundary_.elements[i].area);
-    solution.entered += direct, solution.left += direct;
-  }
-  solution.uncollided = at_samples(collisions.uncollided);
   read(at_samples(collisions.at_once), solution);
   return solution;
+}
+
+// Adds the light not entering the diffusion problem. Of light crossing a thin body, the part at the samples is more exact than
+// that at the elements; the difference is taken from the collisions.
+void DiffusionBody::take_uncollided(const EnteringLight& light, FirstCollisions& collisions,
+                                    Solution& solution, Monitor* monitor) const {
+  constexpr double kThin = .01;  // share of light crossing a thin body
+  Rgb direct{}, crossing{};
+  for (std::size_t i = 0; i < boundary_.elements.size(); ++i) {
+    const double area = double(boundary_.elements[i].area);
+    direct += Rgb(collisions.uncollided[i] + collisions.at_once[i]) * area;
+    crossing += Rgb(collisions.crossing[i]) * area;
+  }
+  const bool is_thin = edges_ != nullptr && max_component(crossing) > kThin * max_component(solution.entered);
+  if (is_thin) {
+    solution.uncollided = at_samples(collisions.uncollided);
+    const std::vector<RgbF> by_samples = crossing_light(space(), light, monitor);
+    Rgb sum{}, kept(1);
+    for (std::size_t s = 0; s < by_samples.size(); ++s) {
+      solution.uncollided[s] += by_samples[s];
+      sum += Rgb(by_samples[s]) * double(samples_[s].area);
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double more = space().media_of(0)[c].albedo * (sum[c] - crossing[c]);
+      if (solution.entered[c] > 0) kept[c] = std::max(0., 1 - more / solution.entered[c]);
+    }
+    for (Channels& source : collisions.source)
+      for (std::size_t c = 0; c < 3; ++c) source.c[c] *= float(kept[c]);
+    solution.entered = solution.entered * kept;
+    crossing = sum;
+  } else {
+    for (std::size_t i = 0; i < collisions.crossing.size(); ++i)
+      collisions.uncollided[i] += collisions.crossing[i];
+    solution.uncollided = at_samples(collisions.uncollided);
+  }
+  solution.entered += direct + crossing, solution.left += direct + crossing;
 }
 
 // Values at the elements, interpolated at samples finer than these.

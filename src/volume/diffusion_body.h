@@ -62,6 +62,8 @@ class DiffusionBody {
   void attach();
   std::uint32_t nearest_below(const Vec3f& position, const Vec3f& normal) const;
   std::vector<Channels> losses() const;
+  void take_uncollided(const EnteringLight& light, FirstCollisions& collisions, Solution& solution,
+                       Monitor* monitor) const;
   std::vector<RgbF> at_samples(std::span<const RgbF> values) const;
   void read(std::span<const RgbF> at_once, Solution& solution) const;
 

@@ -27,6 +27,7 @@ class Depositor {
  public:
   explicit Depositor(const DiffusionSpace& space) : space_(space), paths_(space) {
     result_.source.resize(space.grid.cells().size());
+    result_.crossing.resize(space.boundary.elements.size());
     result_.uncollided.resize(space.boundary.elements.size());
     result_.at_once.resize(space.boundary.elements.size());
     for (const std::array<CalibratedMedium, 3>& media : space.media)
@@ -173,10 +174,11 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
 void Depositor::leave(Way way, Exit exit, std::size_t i, Rgb flux) {
   const double least = kLeastReflected * max_component(flux);
   for (int reflections = 1;; ++reflections) {
+    std::vector<RgbF>& leaving = reflections == 1 ? result_.crossing : result_.uncollided;
     const auto [further, reflectance] = paths_.reflected(way, exit);
     spread(further.from, exit);
     for (const auto& [element, per_area] : spread_)
-      result_.uncollided[element] += RgbF(flux * ((1 - reflectance) * per_area));
+      leaving[element] += RgbF(flux * ((1 - reflectance) * per_area));
     flux *= reflectance;
     way = further;
     const std::array<CalibratedMedium, 3>& media = space_.media_of(exit.cell);
@@ -266,6 +268,7 @@ class EntryInParts {
       const FirstCollisions more = part.take();
       for (std::size_t i = 0; i < sum.source.size(); ++i) sum.source[i].c += more.source[i].c;
       for (std::size_t i = 0; i < sum.at_once.size(); ++i) {
+        sum.crossing[i] += more.crossing[i];
         sum.uncollided[i] += more.uncollided[i];
         sum.at_once[i] += more.at_once[i];
       }
@@ -283,15 +286,17 @@ class EntryInParts {
 
 }  // namespace
 
+Rgb flux_of(const DiffusionSpace& space, const EnteringLight& light, std::size_t l, std::size_t sample) {
+  const Rgb tint = light.tints.empty() ? Rgb(1) : Rgb(light.tints[sample]);
+  return emission(light.lights[l]) * tint *
+         (double(space.samples[sample].area) * double(light.transfers[l].weights[sample]));
+}
+
 void for_each_source(const DiffusionSpace& space, const EnteringLight& light,
                      const std::function<void(std::vector<Rgb>, const DirectionsOf&)>& visit) {
   const std::vector<BoundaryElement>& elements = space.boundary.elements;
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
-    std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) {
-      const Rgb tint = light.tints.empty() ? Rgb(1) : Rgb(light.tints[s]);
-      return emission(light.lights[l]) * tint *
-             (double(space.samples[s].area) * double(light.transfers[l].weights[s]));
-    });
+    std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) { return flux_of(space, light, l, s); });
     visit(std::move(flux), [&space, &elements, &one = light.lights[l]](std::size_t i) {
       return towards_light(one, elements[i], space.eta(), i);
     });

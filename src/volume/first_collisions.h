@@ -28,12 +28,15 @@ struct EnteringLight {
 /// Flux by cell, and exitance by element.
 struct FirstCollisions {
   std::vector<Channels> source;
-  std::vector<RgbF> uncollided;  ///< light crossing the body
+  std::vector<RgbF> crossing;    ///< lights' uncollided light, at its first exit
+  std::vector<RgbF> uncollided;  ///< other uncollided light
   std::vector<RgbF> at_once;     ///< light leaving at its collision, too close to the surface for cells
 };
 
 /// Directions of the light entering at an element, by its index.
 using DirectionsOf = std::function<EntryDirections(std::size_t)>;
+/// Flux of a light transmitted at a sample, W.
+Rgb flux_of(const DiffusionSpace& space, const EnteringLight& light, std::size_t l, std::size_t sample);
 /// Calls visit(flux, directions) for each light and for uniform light; flux: transmitted at each element, W.
 void for_each_source(const DiffusionSpace& space, const EnteringLight& light,
                      const std::function<void(std::vector<Rgb>, const DirectionsOf&)>& visit);

@@ -121,6 +121,25 @@ TEST(Uvs, OfPlyMayBeOfFaces) {
   EXPECT_THROW(with_uvs(MeshFile{folder.file("none.ply"), false, {}}), Error);
 }
 
+// Claim: UVs that are not numbers are 0 and counted in a warning, in every format with UVs; the name of a texture in a PLY
+// file is reported if no texture is used. Fails if one is silent.
+TEST(Uvs, NotFiniteAreReported) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt nan 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  put_bytes(
+      folder.file("a.ply"),
+      "ply\nformat ascii 1.0\ncomment TextureFile wood.png\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nproperty float u\nproperty float v\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 inf 0\n0 1 0 0 1\n3 0 1 2\n");
+  for (const char* name : {"a.obj", "a.ply"}) {
+    const CheckedMesh mesh = make_mesh(file_shape(folder.file(name)), MeshUvs::required);
+    EXPECT_EQ(mesh.mesh.uvs.at(0)[1], (std::array<float, 2>{0, 0})) << name;
+    EXPECT_TRUE(warns(mesh.report, "not finite at 1 of 3 corners")) << name;
+    EXPECT_FALSE(warns(mesh.report, "wood.png")) << name;
+  }
+  EXPECT_TRUE(warns(make_mesh(file_shape(folder.file("a.ply"))).report, "wood.png"));
+}
+
 // Claim: a mesh without UVs is refused, by name, where a texture needs them. Fails if they are taken as 0.
 TEST(Uvs, MustBeThere) {
   const ScratchFolder folder;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "core/scratch_folder.h"
 #include "input/load_scene.h"
@@ -59,6 +60,20 @@ TEST(Textures, OfAnyChannelsAndWindowsAreAlike) {
   }
   const Image window = image_of("data_window.json", "t_dw.exr");
   EXPECT_TRUE(same_pixels(window, image_of("data_window.json", "t_pad.exr")));
+}
+
+// Claim: an image from black on the left to white on the right covers a quad from edge to edge; filters do not mix its
+// sides there. Tolerance: 1e-3 of the plain colours, the outermost of 16 pixels. Fails if the image is repeated (half grey).
+TEST(Textures, EndAtTheEdgesOfAQuad) {
+  const ScratchFolder folder;
+  put_png(folder.file("sides.png"), 2, 1, [](int column, int) {
+    return column == 0 ? Bytes{0, 0, 0} : Bytes{255, 255, 255};
+  });
+  const Image image =
+      picture_of(folder, quad_scene(R"("reflectance": {"texture": "sides.png"})", R"("method": "lambert")"));
+  const auto at = [&](std::size_t x) { return double(image.pixels[(8 * 16 + x) * image.channels.size()]); };
+  EXPECT_NEAR(at(1), 0, 1e-3);
+  EXPECT_NEAR(at(14), 3 / std::numbers::pi, 1e-3);
 }
 
 // Claim: the plan counts the image reader's memory for constant textures, too. Source: make_plan.cpp, 105 MB in

@@ -90,28 +90,5 @@ TEST(EdgeExitance, LightCrossingAPlateIsEven) {
   EXPECT_LT(differences[differences.size() * 99 / 100], .06);
 }
 
-// Claim: light crossing a small ball is smooth on its far side also where samples are finer than cells: next to each other,
-// they differ little. Source: the far side is smooth. Tolerance: p99 of 28 % (measured 21). Fails if: all samples of an element
-// have its value (34 %).
-TEST(EdgeExitance, LightCrossingABallHasNoSquares) {
-  LitBody body(SphereShape{{}, 3}, 1);
-  const VolumeExitance solved =
-      diffused(body, grey({.02, .7, 0, 1.4}), DirectionalLight{{0, -1, 0}, Rgb(1)}, 1, 4);
-  const std::vector<SurfaceSample>& samples = body.surface.samples;
-  std::vector<double> differences;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples[i].normal.y > -.5f) continue;
-    std::size_t next = i;
-    float nearest = INFINITY;
-    for (std::size_t j = 0; j < samples.size(); ++j) {
-      const Vec3f apart = samples[j].position - samples[i].position;
-      if (j != i && dot(apart, apart) < nearest) nearest = dot(apart, apart), next = j;
-    }
-    differences.push_back(std::abs(double(solved.exitance[i].x / solved.exitance[next].x) - 1));
-  }
-  std::ranges::sort(differences);
-  EXPECT_LT(differences[differences.size() * 99 / 100], .28);
-}
-
 }  // namespace
 }  // namespace opaline

@@ -203,6 +203,9 @@ class PlyReader {
       give_uvs(mesh_, uvs_);
     }
     give_colors();
+    if (!has_uvs_ && !header_.texture.empty())
+      mesh_.warnings.push_back(path_ + ": the texture " + quoted(header_.texture) +
+                               " (TextureFile) is ignored; the scene file defines the material of a shape");
     if (textures_ > 1)
       mesh_.warnings.push_back(path_ + ": its faces have " + std::to_string(textures_) +
                                " textures (texnumber), treated as one");

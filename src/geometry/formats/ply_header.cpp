@@ -54,7 +54,9 @@ class HeaderReader {
       element();
     } else if (keyword == "property") {
       property();
-    } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
+    } else if (keyword == "comment") {
+      if (at_.word() == "TextureFile" && header_.texture.empty()) header_.texture = at_.rest_of_line();
+    } else if (!keyword.empty() && keyword != "obj_info") {
       throw bad_line(path_, at_.line(), "unknown statement in a PLY header",
                      "format, element, property, comment or end_header", quoted(keyword));
     }

@@ -34,6 +34,7 @@ enum class PlyEncoding { ascii, little_endian, big_endian };
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
+  std::string texture;   ///< name in a comment "TextureFile" (MeshLab); empty: none
   std::size_t size = 0;  ///< bytes, up to and with the newline after end_header
   int lines = 0;
 };

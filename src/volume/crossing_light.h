@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Light crossing a thin body without collision, focused by its curved surface.
+#pragma once
+
+#include <vector>
+
+#include "volume/first_collisions.h"
+
+namespace opaline {
+
+/// Exitance of the lights' uncollided light at its first exit, W per area, one per sample: a ray for each sample and
+/// direction, spread over the samples around its exit, as far as the rays there are apart.
+/// error Error{interrupted}
+std::vector<RgbF> crossing_light(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor);
+
+}  // namespace opaline
