@@ -45,7 +45,7 @@ struct ErrorTerms {
 };
 // Fitted to the table of bench_volume_models; `thin` of diffusion to bodies lit from behind.
 constexpr ErrorTerms kErrorOfBodies{.05, .9, .5}, kErrorOfPlates{.07, .25, .55},
-    kErrorOfDiffusion{.0254, .04, .143, 2};
+    kErrorOfDiffusion{.025, .04, .14, 2};
 
 constexpr std::array<const char*, 3> kChannels{"red", "green", "blue"};
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kNarrowest = 1.5f;    // reach of an exit, spacings of the samples
 constexpr float kWidest = 1.5f;       // the same, lattice cells
-constexpr std::size_t kNearest = 8;   // exits within its reach
+constexpr std::size_t kNearest = 8;   // exits within its reach, per direction of the light
 constexpr float kSameSheet = .5f;     // least cosine between normals of one sheet
 constexpr double kFarthest = 8;       // mean free paths
 constexpr double kLeastShare = 1e-4;  // least flux of a ray, over the largest
@@ -47,14 +47,19 @@ class Crossing {
   /// Adds one light's exitance to `result`.
   /// flux: transmitted at each sample, W
   void add(std::span<const Rgb> flux, const Light& light, Monitor* monitor, std::vector<RgbF>& result) const {
-    std::vector<Exit> exits = exits_of(flux, light, monitor);
+    double least = 0;
+    for (const Rgb& one : flux) least = std::max(least, kLeastShare * max_component(one));
+    std::vector<Exit> exits = exits_of(flux, least, light, monitor);
     if (exits.empty()) return;
+    const auto lit =
+        std::size_t(std::ranges::count_if(flux, [&](const Rgb& one) { return max_component(one) > least; }));
+    const std::size_t count = kNearest * ((exits.size() + lit - 1) / lit);
     const NearestSample grid(points(exits, spacing_));
     float widest = 0;
     parallel_chunks(exits.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
       std::vector<float> distances;
       for (std::size_t i = begin; i < end; ++i) {
-        exits[i].reach = reach_of(exits[i], exits, grid, distances);
+        exits[i].reach = reach_of(exits[i], exits, grid, count, distances);
         exits[i].weight = weight_of(exits[i]);
       }
     });
@@ -92,16 +97,15 @@ class Crossing {
   }
 
   // Exits of all samples' rays, in order.
-  std::vector<Exit> exits_of(std::span<const Rgb> flux, const Light& light, Monitor* monitor) const {
+  std::vector<Exit> exits_of(std::span<const Rgb> flux, double least, const Light& light,
+                             Monitor* monitor) const {
     constexpr std::size_t kChunk = 256;
-    double largest = 0;
-    for (const Rgb& one : flux) largest = std::max(largest, max_component(one));
     std::vector<std::vector<Exit>> parts((flux.size() + kChunk - 1) / kChunk);
     parallel_chunks(flux.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
       advance(monitor, 0);
       std::vector<Exit>& part = parts[begin / kChunk];
       for (std::size_t s = begin; s < end; ++s) {
-        if (!(max_component(flux[s]) > kLeastShare * largest)) continue;
+        if (!(max_component(flux[s]) > least)) continue;
         const EntryDirections entry = towards_light(light, space_.samples[s], space_.eta(), s);
         for (const EntryDirection& from : entry.all())
           if (const std::optional<Exit> exit = exit_of(s, Vec3d(from.outward), flux[s] * from.share))
@@ -117,6 +121,8 @@ class Crossing {
     const BoundaryElement& from = space_.samples[sample];
     const std::uint32_t cell = space_.attached[space_.boundary.of_sample[sample]].cell;
     if (cell == DiffusionGrid::kNone) return {};
+    for (std::size_t c = 0; c < 3; ++c)
+      if (!(space_.media_of(cell)[c].albedo > 0)) flux[c] = 0;
     const Way way{space_.in_lattice(from.position),
                   refracted_inward(-outward, Vec3d(from.normal), space_.eta())};
     const BodyPaths::End end =
@@ -134,8 +140,8 @@ class Crossing {
     return Exit{position, normal, leaves};
   }
 
-  // Distance of the kNearest-th exit on the same sheet.
-  float reach_of(const Exit& exit, std::span<const Exit> exits, const NearestSample& grid,
+  // Distance of another exit on the same sheet: the number `count` of the nearest.
+  float reach_of(const Exit& exit, std::span<const Exit> exits, const NearestSample& grid, std::size_t count,
                  std::vector<float>& distances) const {
     for (float radius = 2 * spacing_; radius < widest_; radius *= 2) {
       distances.clear();
@@ -145,9 +151,9 @@ class Crossing {
         if (distance2 < radius * radius && dot(exits[member.sample].normal, exit.normal) > kSameSheet)
           distances.push_back(distance2);
       });
-      if (distances.size() <= kNearest) continue;
-      std::ranges::nth_element(distances, distances.begin() + std::ptrdiff_t(kNearest));
-      return std::clamp(std::sqrt(distances[kNearest]), kNarrowest * spacing_, widest_);
+      if (distances.size() <= count) continue;
+      std::ranges::nth_element(distances, distances.begin() + std::ptrdiff_t(count));
+      return std::clamp(std::sqrt(distances[count]), kNarrowest * spacing_, widest_);
     }
     return widest_;
   }
@@ -176,6 +182,7 @@ std::vector<RgbF> crossing_light(const DiffusionSpace& space, const EnteringLigh
   std::vector<RgbF> result(space.samples.size());
   std::vector<Rgb> flux(result.size());
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
+    if (!is_focused(light.lights[l])) continue;
     for (std::size_t s = 0; s < flux.size(); ++s) flux[s] = flux_of(space, light, l, s);
     crossing.add(flux, light.lights[l], monitor, result);
   }

@@ -8,7 +8,7 @@
 
 namespace opaline {
 
-/// Exitance of the lights' uncollided light at its first exit, W per area, one per sample: a ray for each sample and
+/// Exitance of the uncollided light of is_focused lights at its first exit, W per area, one per sample: a ray for each sample and
 /// direction, spread over the samples around its exit, as far as the rays there are apart.
 /// error Error{interrupted}
 std::vector<RgbF> crossing_light(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor);

@@ -205,7 +205,7 @@ EdgeExitance::Entry EdgeExitance::entry_of(const Beam& beam, const Vec3d& positi
 }
 
 // True if light enters there or in a cell beside.
-bool EdgeExitance::is_lit(std::uint32_t sheet, const Source& source) const {
+bool EdgeExitance::is_lit(std::uint32_t sheet, const TransmittedLight& source) const {
   const auto enters = [&](std::uint32_t e) { return max_component(source.flux[e]) > 0; };
   if (enters(sheet)) return true;
   const std::uint32_t cell = space_.attached[sheet].cell;
@@ -219,7 +219,7 @@ bool EdgeExitance::is_lit(std::uint32_t sheet, const Source& source) const {
 
 // Beams through each sheet, and those reflected at each other one.
 std::vector<std::vector<EdgeExitance::Beam>> EdgeExitance::beams_of(const Paths& paths,
-                                                                    const Source& source) const {
+                                                                    const TransmittedLight& source) const {
   std::vector<std::vector<Beam>> beams;
   for (const std::uint32_t sheet : paths.sheets) {
     if (!is_lit(sheet, source)) continue;
@@ -247,7 +247,7 @@ std::vector<std::vector<EdgeExitance::Beam>> EdgeExitance::beams_of(const Paths&
 }
 
 // Sum over the paths of the first collisions there.
-Rgb EdgeExitance::scattered_once(const Paths& paths, const Source& source) const {
+Rgb EdgeExitance::scattered_once(const Paths& paths, const TransmittedLight& source) const {
   Rgb sum{};
   for (const std::vector<Beam>& beams : beams_of(paths, source)) {
     std::size_t next = 0;
@@ -295,21 +295,21 @@ std::vector<EdgeExitance::AtSample> EdgeExitance::exitance(const EnteringLight& 
                                                            Monitor* monitor) const {
   constexpr std::size_t kAtOnce = 4;  // lights, by memory
   std::vector<AtSample> result(samples_.size());
-  std::vector<Source> sources;
+  std::vector<TransmittedLight> sources;
   const auto add_scattered_once = [&] {
     for_each_path(monitor, [&](std::size_t i, const Paths& paths) {
-      for (const Source& source : sources) result[i].exitance += scattered_once(paths, source);
+      for (const TransmittedLight& source : sources) result[i].exitance += scattered_once(paths, source);
     });
     sources.clear();
   };
-  for_each_source(space_, light, [&](std::vector<Rgb> flux, const DirectionsOf& directions) {
-    sources.push_back({std::move(flux), directions});
+  for_each_source(space_, light, [&](TransmittedLight one) {
+    sources.push_back(std::move(one));
     if (sources.size() == kAtOnce) add_scattered_once();
   });
   const double factor = 1 / (4 * space_.eta() * space_.eta());
   for_each_path(monitor, [&](std::size_t i, const Paths& paths) {
     Rgb once = result[i].exitance;
-    for (const Source& source : sources) once += scattered_once(paths, source);
+    for (const TransmittedLight& source : sources) once += scattered_once(paths, source);
     const Rgb more = scattered_more(paths, fluence);
     result[i].weight = weight_of(paths);
     for (std::size_t c = 0; c < 3; ++c) {

@@ -63,10 +63,6 @@ class EdgeExitance {
     double length = 0;
     std::uint32_t element = DiffusionGrid::kNone;
   };
-  struct Source {
-    std::vector<Rgb> flux;
-    DirectionsOf directions;
-  };
 
   float agreement(const BoundaryElement& from, std::uint32_t element) const {
     return dot(from.normal, space_.boundary.elements[element].normal);
@@ -78,12 +74,12 @@ class EdgeExitance {
   Rgb absorbed_in(double step, std::uint32_t cell) const;
   Entry back_to_sheet(const Vec3d& position, const Vec3d& along, std::uint32_t sheet) const;
   Entry entry_of(const Beam& beam, const Vec3d& position) const;
-  bool is_lit(std::uint32_t sheet, const Source& source) const;
-  std::vector<std::vector<Beam>> beams_of(const Paths& paths, const Source& source) const;
+  bool is_lit(std::uint32_t sheet, const TransmittedLight& source) const;
+  std::vector<std::vector<Beam>> beams_of(const Paths& paths, const TransmittedLight& source) const;
   static Rgb weight_of(const Paths& paths);
   template <class Visit>
   void for_each_path(Monitor* monitor, const Visit& visit) const;
-  Rgb scattered_once(const Paths& paths, const Source& source) const;
+  Rgb scattered_once(const Paths& paths, const TransmittedLight& source) const;
   Rgb scattered_more(const Paths& paths, std::span<const FluenceInCell> fluence) const;
   std::uint32_t element_of(std::size_t sample) const { return space_.boundary.of_sample[sample]; }
   std::uint32_t cell_of(std::size_t sample) const { return space_.attached[element_of(sample)].cell; }

@@ -37,7 +37,7 @@ class Depositor {
   }
 
   /// entering: W
-  void enter(const Vec3d& outward, const Rgb& entering, std::size_t i);
+  void enter(const Vec3d& outward, const Rgb& entering, std::size_t i, bool is_focused);
   FirstCollisions take() { return std::move(result_); }
 
  private:
@@ -61,7 +61,7 @@ class Depositor {
   void deposit(const Vec3d& place, std::uint32_t fallback, std::size_t channel, double flux);
   void deposit(const Way& way, double start, const Stretch& stretch, std::uint32_t fallback, Rgb& flux);
   void spread(const Vec3d& at, const Exit& exit);
-  void leave(Way way, Exit exit, std::size_t i, Rgb flux);
+  void leave(Way way, Exit exit, std::size_t i, bool is_focused, Rgb flux);
 
   const DiffusionSpace& space_;
   BodyPaths paths_;
@@ -171,10 +171,10 @@ void Depositor::spread(const Vec3d& at, const Exit& exit) {
 
 // Splits the flux at an exit: the transmitted part leaves; the reflected part collides on its further path, or reaches
 // the surface again.
-void Depositor::leave(Way way, Exit exit, std::size_t i, Rgb flux) {
+void Depositor::leave(Way way, Exit exit, std::size_t i, bool is_focused, Rgb flux) {
   const double least = kLeastReflected * max_component(flux);
   for (int reflections = 1;; ++reflections) {
-    std::vector<RgbF>& leaving = reflections == 1 ? result_.crossing : result_.uncollided;
+    std::vector<RgbF>& leaving = is_focused && reflections == 1 ? result_.crossing : result_.uncollided;
     const auto [further, reflectance] = paths_.reflected(way, exit);
     spread(further.from, exit);
     for (const auto& [element, per_area] : spread_)
@@ -200,7 +200,7 @@ void Depositor::leave(Way way, Exit exit, std::size_t i, Rgb flux) {
 
 // Light transmitted at an element from one direction. Collisions above the centre of the element's cell
 // partly leave at once, as a current divided by two resistances; the rest continues.
-void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) {
+void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i, bool is_focused) {
   const BoundaryElement& element = space_.boundary.elements[i];
   const AttachedElement& attached = space_.attached[i];
   const std::array<CalibratedMedium, 3>& media = space_.media_of(attached.cell);
@@ -230,7 +230,7 @@ void Depositor::enter(const Vec3d& outward, const Rgb& entering, std::size_t i) 
     if (media[c].albedo > 0)
       arriving[c] = space_.varies() ? colliding[c] / factors[c]
                                     : entering[c] * std::exp(-exit->length * media[c].extinction);
-  leave(way, *exit, i, arriving);
+  leave(way, *exit, i, is_focused, arriving);
 }
 
 // Light transmitted at each element, W: the sum over the samples.
@@ -248,16 +248,16 @@ class EntryInParts {
   EntryInParts(const DiffusionSpace& space, Monitor* monitor)
       : space_(space), monitor_(monitor), parts_(kParts, Depositor(space)) {}
 
-  /// in    flux: one per element
-  void enter(std::span<const Rgb> flux, const DirectionsOf& directions) {
+  void enter(const TransmittedLight& light) {
+    const std::vector<Rgb>& flux = light.flux;
     const std::size_t of_part = (flux.size() + kParts - 1) / kParts;
     parallel_chunks(flux.size(), of_part, [&](std::size_t begin, std::size_t end, std::size_t part) {
       for (std::size_t i = begin; i < end; ++i) {
         advance(monitor_, 1);
         if (!(max_component(flux[i]) > 0) || space_.attached[i].cell == DiffusionGrid::kNone) continue;
-        const EntryDirections entry = directions(i);
+        const EntryDirections entry = light.directions(i);
         for (const EntryDirection& from : entry.all())
-          parts_[part].enter(Vec3d(from.outward), flux[i] * from.share, i);
+          parts_[part].enter(Vec3d(from.outward), flux[i] * from.share, i, light.is_focused);
       }
     });
   }
@@ -292,14 +292,19 @@ Rgb flux_of(const DiffusionSpace& space, const EnteringLight& light, std::size_t
          (double(space.samples[sample].area) * double(light.transfers[l].weights[sample]));
 }
 
+bool is_focused(const Light& light) {
+  return is_delta(light) || extent(light).center.has_value();
+}
+
 void for_each_source(const DiffusionSpace& space, const EnteringLight& light,
-                     const std::function<void(std::vector<Rgb>, const DirectionsOf&)>& visit) {
+                     const std::function<void(TransmittedLight)>& visit) {
   const std::vector<BoundaryElement>& elements = space.boundary.elements;
   for (std::size_t l = 0; l < light.lights.size(); ++l) {
     std::vector<Rgb> flux = entering_flux(space, [&](std::size_t s) { return flux_of(space, light, l, s); });
-    visit(std::move(flux), [&space, &elements, &one = light.lights[l]](std::size_t i) {
+    const auto directions = [&space, &elements, &one = light.lights[l]](std::size_t i) {
       return towards_light(one, elements[i], space.eta(), i);
-    });
+    };
+    visit({std::move(flux), directions, is_focused(light.lights[l])});
   }
   if (light.even.empty()) return;
   const std::vector<Rgb> flux =
@@ -308,16 +313,15 @@ void for_each_source(const DiffusionSpace& space, const EnteringLight& light,
   for (std::size_t s = 0; s < light.beside.size(); ++s)
     beside += Rgb(light.beside[s]) * double(space.samples[s].area);
   const EvenDirections even(flux, beside);
-  visit(flux, [&space, &elements, even, flux](std::size_t i) {
+  const auto directions = [&space, &elements, even, flux](std::size_t i) {
     return even.at(elements[i], space.eta(), flux[i], i);
-  });
+  };
+  visit({flux, directions, false});
 }
 
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor) {
   EntryInParts entry(space, monitor);
-  for_each_source(space, light, [&](const std::vector<Rgb>& flux, const DirectionsOf& directions) {
-    entry.enter(flux, directions);
-  });
+  for_each_source(space, light, [&](const TransmittedLight& one) { entry.enter(one); });
   return entry.take();
 }
 

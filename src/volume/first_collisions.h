@@ -28,7 +28,7 @@ struct EnteringLight {
 /// Flux by cell, and exitance by element.
 struct FirstCollisions {
   std::vector<Channels> source;
-  std::vector<RgbF> crossing;    ///< lights' uncollided light, at its first exit
+  std::vector<RgbF> crossing;    ///< uncollided light of is_focused lights, at its first exit
   std::vector<RgbF> uncollided;  ///< other uncollided light
   std::vector<RgbF> at_once;     ///< light leaving at its collision, too close to the surface for cells
 };
@@ -37,9 +37,18 @@ struct FirstCollisions {
 using DirectionsOf = std::function<EntryDirections(std::size_t)>;
 /// Flux of a light transmitted at a sample, W.
 Rgb flux_of(const DiffusionSpace& space, const EnteringLight& light, std::size_t l, std::size_t sample);
-/// Calls visit(flux, directions) for each light and for uniform light; flux: transmitted at each element, W.
+/// True if a curved surface focuses a light: not if it surrounds the scene.
+bool is_focused(const Light& light);
+
+/// Light transmitted at all elements.
+struct TransmittedLight {
+  std::vector<Rgb> flux;  ///< one per element, W
+  DirectionsOf directions;
+  bool is_focused;  ///< false for uniform light
+};
+/// Calls visit for each light and for uniform light.
 void for_each_source(const DiffusionSpace& space, const EnteringLight& light,
-                     const std::function<void(std::vector<Rgb>, const DirectionsOf&)>& visit);
+                     const std::function<void(TransmittedLight)>& visit);
 
 /// Advances by one an element and source of light, of sources_of.
 FirstCollisions first_collisions(const DiffusionSpace& space, const EnteringLight& light, Monitor* monitor);
