@@ -106,12 +106,13 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
       for (const std::uint32_t ray : hits.rays) held_places.push_back(std::uint32_t(keys[begin + ray]));
       HeldView::Gathering* const held =
           view != nullptr ? &gathering_of(view->at_places[first_chunk + chunk], field, held_places) : nullptr;
-      std::vector<RgbF> irradiance(hits.points.size());
+      std::vector<RgbF> irradiance(hits.points.size()), further(hits.points.size());
       std::vector<float> nearness(hits.points.size());  // mean inverse distance of the hits
       for_each_gathered({input.rays, shader, hits.points, hits.keys, eta, rays_each,
                          hash_bits(input.scene.settings.seed, kSeed), held, view},
                         [&](const SurfaceLight& light) {
                           irradiance[light.point] += light.irradiance;
+                          further[light.point] += light.further;
                           nearness[light.point] += 1 / (float(rays_each) * light.distance);
                         });
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
@@ -119,11 +120,13 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
         const float spacing = float(apart * double(rays[k].ray.far));
         lattice.places.set(place, hits.points[i], eta, spacing);
         lattice.irradiance[place] = irradiance[i];
+        lattice.further[place] = further[i];
         is_near[k] = spacing * nearness[i] > kNear;
       }
     }
   });
   for (std::size_t k = 0; k < places.size(); ++k) lattice.is_near[places[k]] = is_near[k] != 0;
+  lattice.smooth_further();
 }
 
 // Cache points of the finer lattice around hits near a close pair of surfaces.
@@ -148,6 +151,7 @@ BouncedPlaces::Lattice::Lattice(const Film& film, int pixels)
       columns(film.resolution[0] / step + 1 + 2 * kAround),
       rows(film.resolution[1] / step + 1 + 2 * kAround),
       irradiance(std::size_t(columns) * std::size_t(rows)),
+      further(irradiance.size()),
       is_near(irradiance.size()) {
   places.resize(irradiance.size());
 }
@@ -185,21 +189,48 @@ std::optional<RgbF> BouncedPlaces::Lattice::at(const CameraRays::FilmPlace& seen
                                                float eta) const {
   const auto [x, y] = in_places(seen);
   if (!(x >= 0 && y >= 0 && x < columns && y < rows)) return {};
+  return mean(irradiance, x, y, point.position, point.normal, eta);
+}
+
+std::optional<RgbF> BouncedPlaces::Lattice::mean(std::span<const RgbF> values, double x, double y,
+                                                 const Vec3f& point, const Vec3f& normal, float eta) const {
   RgbF sum;
   float weights = 0;
   const int left = std::clamp(int(x) - 1, 0, columns - int(kBeside));
   for (int row = std::max(0, int(y) - 1); row <= std::min(rows - 1, int(y) + 2); ++row) {
     const std::size_t first = std::size_t(row) * std::size_t(columns) + std::size_t(left);
     const std::array<float, kBeside> of_row =
-        places.weights({point.position, point.normal, eta, float(x - left), float(y - row)}, first);
+        places.weights({point, normal, eta, float(x - left), float(y - row)}, first);
     for (std::size_t k = 0; k < kBeside; ++k) {
       if (!(of_row[k] > 0)) continue;
-      sum += irradiance[first + k] * of_row[k];
+      sum += values[first + k] * of_row[k];
       weights += of_row[k];
     }
   }
   if (!(weights > kLeastWeight)) return {};
   return sum * (1 / weights);
+}
+
+void BouncedPlaces::Lattice::smooth_further() {
+  constexpr int kTimes = 6;
+  if (std::ranges::all_of(further, [](const RgbF& value) { return value == RgbF{}; })) return;
+  for (std::size_t place = 0; place < further.size(); ++place) irradiance[place] -= further[place];
+  for (int time = 0; time < kTimes; ++time) {
+    std::vector<RgbF> smooth = further;
+    parallel_chunks(further.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!(places.eta[i] >= 0)) continue;
+        const Vec3f point(places.x[i], places.y[i], places.z[i]),
+            normal(places.normal_x[i], places.normal_y[i], places.normal_z[i]);
+        const std::size_t row = i / std::size_t(columns), column = i % std::size_t(columns);
+        if (const std::optional<RgbF> known =
+                mean(further, double(column), double(row), point, normal, places.eta[i]))
+          smooth[i] = *known;
+      }
+    });
+    further = std::move(smooth);
+  }
+  for (std::size_t place = 0; place < further.size(); ++place) irradiance[place] += further[place];
 }
 
 BouncedLight::BouncedLight(const RenderInput& input, const Shader& shader)

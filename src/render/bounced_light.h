@@ -54,6 +54,7 @@ class BouncedPlaces {
     int columns, rows;
     Places places;
     std::vector<RgbF> irradiance;
+    std::vector<RgbF> further;  ///< part of it that had bounced before
     std::vector<bool> is_near;  ///< true if the gathered surfaces are close, relative to the spacing
 
     Lattice(const Film& film, int pixels);
@@ -61,6 +62,13 @@ class BouncedPlaces {
     /// True if a cache point around this position is near a surface and the irradiance varies.
     bool needs_closer_places(const CameraRays::FilmPlace& seen) const;
     std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point, float eta) const;
+    /// Smooths the part that had bounced before: its paths are noisier, and it varies less.
+    void smooth_further();
+
+   private:
+    /// Mean of values at the places around a position, by their weights.
+    std::optional<RgbF> mean(std::span<const RgbF> values, double x, double y, const Vec3f& point,
+                             const Vec3f& normal, float eta) const;
   };
   void gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
               std::span<const std::uint32_t> places);

@@ -86,12 +86,14 @@ void use_all(const GatherInput& input, std::size_t begin, std::span<const Traced
   std::vector<std::uint64_t> keys;
   keys.reserve(met.size());
   for (const Met& m : met) keys.push_back(hash_bits(input.keys[begin + m.point], std::uint64_t(m.number)));
-  const std::vector<RgbF> radiance = input.shader.radiance_along(rays, keys, held);
+  std::vector<RgbF> further(rays.size());
+  const std::vector<RgbF> radiance = input.shader.radiance_along(rays, keys, held, further);
   const float each = float(std::numbers::pi) / float(input.rays_each);
   for (std::size_t r = 0; r < radiance.size(); ++r) {
     const float transmitted = input.eta > 0 ? fresnel_transmittance(met[r].cosine, input.eta) : 1.0f;
     const Ray& ray = rays[r].ray;
-    use({begin + met[r].point, ray.direction, ray.far, radiance[r] * (each * transmitted)});
+    const float factor = each * transmitted;
+    use({begin + met[r].point, ray.direction, ray.far, radiance[r] * factor, further[r] * factor});
   }
 }
 

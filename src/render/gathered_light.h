@@ -16,7 +16,7 @@ namespace opaline {
 /// the time of small sets.
 inline constexpr std::size_t kGatheredAtOnce = 1024;
 
-/// Light gathered at points, by rays over the hemisphere, from surfaces under direct light.
+/// Light gathered at points, by rays over the hemisphere, from surfaces.
 struct GatherInput {
   const RayScene& rays;
   const Shader& shader;
@@ -37,6 +37,7 @@ struct SurfaceLight {
   Vec3f towards;      ///< the surface; unit
   float distance;     ///< to it, world units
   RgbF irradiance;    ///< irradiance transmitted by the boundary, if any, W/mm^2
+  RgbF further;       ///< part of it that had bounced before
 };
 
 using UseOfGathered = std::function<void(const SurfaceLight&)>;

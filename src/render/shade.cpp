@@ -39,7 +39,7 @@ RgbF scattered_exit(const AngularExit& exit, float cosine, const SurfaceHits& hi
 // Spread of the cones around some 64 directions over a hemisphere, for texture filtering.
 constexpr float kGatheringSpread = 0.25f;
 
-constexpr std::uint64_t kGatheringSeed = 1;
+constexpr std::uint64_t kGatheringSeed = 1, kFurtherSeed = 2;
 
 // Full angle of a camera ray.
 float camera_ray_spread(const Scene& scene) {
@@ -105,8 +105,9 @@ Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::
     if (hits.points.empty()) continue;
     const Field& field = *fields_.all[f];
     HeldView::Surface* const known = held != nullptr ? &held->surfaces[f] : nullptr;
-    const std::vector<RgbF> bounced =
-        field.asks_irradiance() ? bounced_at(hits, field.eta(), pass, known) : std::vector<RgbF>{};
+    const std::vector<RgbF> bounced = field.asks_irradiance() && (pass.is_seen || !field.asks_samples())
+                                          ? bounced_at(hits, field.eta(), pass, known)
+                                          : std::vector<RgbF>{};
     const PointIrradianceInput lighting{input_.rays,
                                         hits.points,
                                         hits.keys,
@@ -118,6 +119,7 @@ Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::
                                         bounced,
                                         pass.is_seen && batch.mirrors == 0};
     write(hits, field.at(hits, lighting, pass, known), batch.rays, batch.out);
+    if (!batch.bounced_further.empty() && !bounced.empty()) write_further(hits, bounced, batch);
     if (field.asks_samples()) result.queries += hits.points.size();
     if (batch.specular == Specular::uniform) add_evenly_mirrored(hits, batch);
     if (batch.specular == Specular::traced && field.eta() > 0 && field.eta() != 1)
@@ -128,22 +130,64 @@ Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::
 
 std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
                                      HeldView::Surface* held) const {
-  if (!pass.is_seen) return {};
+  if (!pass.is_seen) return bounced_further(hits, eta);
   if (bounced_ != nullptr) return bounced_->at(hits, eta, held);
   if (pass.gathers == nullptr) return {};
   return gathered_irradiance({input_.rays, *pass.gathers, hits.points, hits.keys, eta, 1,
                               hash_bits(point_irradiance_seed(input_.scene.settings), kGatheringSeed)});
 }
 
+std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, float eta) const {
+  constexpr float kMostLikely = .9f;  // probability of a path's continuation, which ends it in white rooms
+  std::vector<RgbF> irradiance(hits.points.size());
+  std::vector<SurfacePoint> points;
+  std::vector<std::uint64_t> keys;
+  std::vector<std::pair<std::size_t, float>> chosen;  // hit, and its probability
+  for (std::size_t i = 0; i < hits.points.size(); ++i) {
+    const RgbF albedo =
+        hits.textures.empty() ? appearances_[hits.hits[i].mesh].albedo : appearance_of(hits, i).albedo;
+    const float likely = std::min(kMostLikely, max_component(albedo));
+    const std::uint64_t key = hash_bits(hits.keys[i], kFurtherSeed);
+    if (!(float(unit_double(key)) < likely)) continue;
+    points.push_back(hits.points[i]);
+    keys.push_back(hash_bits(key, 1));
+    chosen.emplace_back(i, likely);
+  }
+  if (chosen.empty()) return irradiance;
+  const std::vector<RgbF> gathered =
+      gathered_irradiance({input_.rays, *this, points, keys, eta, 1,
+                           hash_bits(point_irradiance_seed(input_.scene.settings), kFurtherSeed)});
+  for (std::size_t k = 0; k < chosen.size(); ++k)
+    irradiance[chosen[k].first] = gathered[k] * (1 / chosen[k].second);
+  return irradiance;
+}
+
 std::vector<RgbF> Shader::radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                                         HeldView::Batch* held) const {
+                                         HeldView::Batch* held, std::span<RgbF> further) const {
   std::vector<PixelSample> seen(rays.size());
-  shade({.rays = rays, .keys = keys, .out = seen, .spread = kGatheringSpread, .specular = Specular::uniform},
+  shade({.rays = rays,
+         .keys = keys,
+         .out = seen,
+         .spread = kGatheringSpread,
+         .specular = Specular::uniform,
+         .bounced_further = further},
         {.entry_samples = 1, .is_seen = false}, held);
   std::vector<RgbF> radiance;
   radiance.reserve(seen.size());
   for (const PixelSample& sample : seen) radiance.push_back(sample.diffuse + sample.specular);
   return radiance;
+}
+
+// The part of the irradiance at the hits.
+void Shader::write_further(const SurfaceHits& hits, std::span<const RgbF> bounced, const RayBatch& batch) {
+  for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+    const PixelSample& sample = batch.out[hits.rays[i]];
+    const RgbF arriving = hits.textures.empty() ? bounced[i] : bounced[i] * hits.textures[i].tint.entering;
+    for (std::size_t c = 0; c < 3; ++c)
+      if (sample.irradiance[c] > 0)
+        batch.bounced_further[hits.rays[i]][c] =
+            sample.diffuse[c] * std::min(1.f, arriving[c] / sample.irradiance[c]);
+  }
 }
 
 std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedRay> rays,

@@ -36,6 +36,7 @@ class Shader {
     int mirrors = 0;  ///< number of specular reflections before
     Specular specular = Specular::traced;
     bool is_of_camera = false;
+    std::span<RgbF> bounced_further = {};  ///< part of the diffuse radiance; empty: unused
   };
   RayBatch camera_batch(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                         std::span<PixelSample> out) const {
@@ -56,10 +57,12 @@ class Shader {
   Shaded shade(const RayBatch& batch, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
   /// Outgoing radiance along rays that hit surfaces, W/(mm^2 sr): diffuse, and specular under an
-  /// approximately uniform illumination. Traces one ray per light.
+  /// approximately uniform illumination. Traces one ray per light, and paths for the light that has bounced
+  /// more than once between surfaces reflecting at the hit.
   /// in    held: cached light transport at these surfaces, extended; or null
+  /// out   further: part of it that has bounced before
   std::vector<RgbF> radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
-                                   HeldView::Batch* held = nullptr) const;
+                                   HeldView::Batch* held, std::span<RgbF> further) const;
 
   /// Hits with exitance depending on the irradiance at the hit itself. eta: of the boundary transmitting it;
   /// 0: none.
@@ -102,8 +105,11 @@ class Shader {
   /// Light from other surfaces at hits; empty: none.
   std::vector<RgbF> bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
                                HeldView::Surface* held) const;
+  /// The same at hits of gathered rays: by one ray from some of them, chosen in proportion to their albedo.
+  std::vector<RgbF> bounced_further(const SurfaceHits& hits, float eta) const;
   void write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
+  static void write_further(const SurfaceHits& hits, std::span<const RgbF> bounced, const RayBatch& batch);
   // Specular reflection: shade_specular.cpp.
   void add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass,
                     HeldView::Surface* held) const;

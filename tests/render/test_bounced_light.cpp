@@ -32,12 +32,14 @@ Scene bouncing_scene() {
   return scene;
 }
 
+constexpr double kDarkFloor = .005;  // sends little light back
+
 // A red wall in the plane x = 0, lit along -x, beside a floor that its light alone reaches.
-Scene red_wall(double height, double half_width) {
+Scene red_wall(double height, double half_width, double floor = kDarkFloor) {
   Scene scene = bouncing_scene();
   scene.shapes = {
       opaque("wall", QuadShape{{0, 0, half_width}, {0, 0, -2 * half_width}, {0, height, 0}}, {.8, .1, .1}),
-      opaque("floor", QuadShape{{0, 0, 200}, {200, 0, 0}, {0, 0, -400}}, Rgb(.5))};
+      opaque("floor", QuadShape{{0, 0, 200}, {200, 0, 0}, {0, 0, -400}}, Rgb(floor))};
   scene.lights = {{"sun", DirectionalLight{{-1, 0, 0}, Rgb(2)}}};
   scene.camera.position = {40, 60, 0};
   scene.camera.look_at = {40, 0, 0};
@@ -66,9 +68,9 @@ TEST(BouncedLight, OfAWallOnAFloor) {
     for (int row = 0; row < 32; ++row) {
       const double x = channel(image, column, row, "P.X"), z = channel(image, column, row, "P.Z");
       expected += 2 * .8 * form_factor(x, z, half_width, height);
-      sent += double(channel(image, column, row, "diffuse.R")) * kPi / .5;
-      EXPECT_NEAR(channel(image, column, row, "diffuse.G") * 8, channel(image, column, row, "diffuse.R"),
-                  1e-5);
+      sent += double(channel(image, column, row, "diffuse.R")) * kPi / kDarkFloor;
+      EXPECT_NEAR(channel(image, column, row, "diffuse.G") * 8 / channel(image, column, row, "diffuse.R"), 1,
+                  .005);
     }
     EXPECT_NEAR(sent, expected, .03 * expected) << column;
   }
@@ -94,33 +96,38 @@ TEST(BouncedLight, FallsTowardsACornerNearerThanItsPlaces) {
       for (int row = 448; row < 576; ++row) {
         const double x = channel(image, column, row, "P.X"), z = channel(image, column, row, "P.Z");
         expected += 2 * .8 * (form_factor(x, z, half_width, height) - form_factor(x, z, half_width, foot));
-        sent += double(channel(image, column, row, "diffuse.R")) * kPi / .5;
+        sent += double(channel(image, column, row, "diffuse.R")) * kPi / kDarkFloor;
       }
     EXPECT_NEAR(sent / expected, 1, .06) << band;
   }
 }
 
-// Claim: inside a sphere with a light in its middle a single bounce adds reflectance times the first light, everywhere:
-// the picture is reflectance / pi E (1 + reflectance), and with the light that bounces it is 1 + reflectance times as bright
-// as without. Source: the integrating sphere. Tolerance: 1 % over the picture, and .5 % of the light that bounces alone.
-// Fails if: that is left out or counted twice, or 2 % off.
+// Claim: inside a sphere with a light in its middle, bounces divide the light by 1 - reflectance, everywhere: the picture is
+// reflectance / pi E / (1 - reflectance). Source: the integrating sphere. Tolerance: 1 % over the picture, and .5 % of the
+// light that bounces alone. Fails if: light bounces once (30 and 60 % too dark), is left out or counted twice.
 TEST(BouncedLight, InAnIntegratingSphere) {
   Scene scene = bouncing_scene();
-  scene.shapes = {opaque("sphere", SphereShape{{}, 50}, Rgb(.6))};
+  scene.shapes = {opaque("sphere", SphereShape{{}, 50}, {.3, .6, .8})};
   scene.lights = {point_light({}, Rgb(2500))};
   scene.camera.position = {0, 0, 20};
   scene.camera.look_at = {};
   const auto mean = [&] {
     const Image image = Prepared(scene).picture();
-    double sum = 0;
+    Rgb sum{};
     for (int y = 0; y < 32; ++y)
-      for (int x = 0; x < 32; ++x) sum += double(channel(image, x, y, "diffuse.G")) / 1024;
+      for (int x = 0; x < 32; ++x)
+        for (std::size_t c = 0; c < 3; ++c)
+          sum[c] += double(channel(image, x, y, std::array{"diffuse.R", "diffuse.G", "diffuse.B"}[c])) / 1024;
     return sum;
   };
-  const double all = mean();
-  EXPECT_NEAR(all, .6 / kPi * 1.6, .01 * .6 / kPi * 1.6);
+  const Rgb all = mean();
   scene.settings.bounces = 0;
-  EXPECT_NEAR(all / mean() - 1, .6, .005 * .6);
+  const Rgb direct = mean();
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double reflectance = scene.shapes[0].reflectance[c];
+    EXPECT_NEAR(all[c] / (reflectance / kPi / (1 - reflectance)), 1, .01) << c;
+    EXPECT_NEAR((all[c] / direct[c] - 1) / (reflectance / (1 - reflectance)), 1, .005) << c;
+  }
 }
 
 // Claim: a marble ball in a large room whose walls all send the same light looks as in surroundings of that radiance.
@@ -155,7 +162,8 @@ TEST_P(BouncedLightBy, WallsIsThatOfSurroundings) {
   scene.settings.bounces = 0;
   const double dark = mean_of_ball(Prepared(scene).picture());
   scene.shapes.pop_back();
-  scene.lights.push_back({"walls", Surroundings{Rgb(reflectance / kPi * intensity / (room * room))}});
+  const double sent = reflectance / (1 - reflectance) / kPi * intensity / (room * room);
+  scene.lights.push_back({"walls", Surroundings{Rgb(sent)}});
   scene.settings.light_samples = 256;
   const double surrounded = mean_of_ball(Prepared(scene).picture());
   EXPECT_GT(surrounded, 1.1 * dark);
@@ -163,7 +171,7 @@ TEST_P(BouncedLightBy, WallsIsThatOfSurroundings) {
 }
 
 Scene ball_beside_wall() {
-  Scene scene = red_wall(40, 60);
+  Scene scene = red_wall(40, 60, .5);
   scene.media = {marble()};
   scene.shapes.push_back(translucent("ball", SphereShape{{20, 10, 0}, 10}));
   scene.settings.samples = 2000;

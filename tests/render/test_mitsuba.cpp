@@ -69,12 +69,21 @@ struct LongMitsuba : ::testing::Test {
   }
 };
 
-// Claim: a red wall, a floor and a ball under a lamp, without and with light that they send to each other once, are what a
-// path tracer makes of them. Tolerance: .5 % of the whole (measured .09 %), 3 % of a block (1.6 %, the noise of both). Fails
-// if: a bounce is left out (the whole is then 11 % darker in red), or counted twice.
+constexpr int kAll = 200;  // bounces
+
+// Claim: a red wall, a floor and a ball under a lamp, without and with light that they send to each other, are what a
+// path tracer makes of them. Tolerance: .5 % of the whole, 3 % of a block (the noise of both). Fails if: a bounce is left out
+// (the whole is then 11 % darker in red), or counted twice.
 TEST_F(LongMitsuba, LightBetweenThings) {
   for (const int bounces : {0, 1})
-    expect_same(scripts + "room.json", {"settings.bounces=" + std::to_string(bounces)}, bounces, .005, .03);
+    expect_same(scripts + "room.json", {"settings.bounces=" + std::to_string(bounces)}, bounces * kAll, .005,
+                .03);
+}
+
+// Claim: a ball in a closed white room with a reflectance of .8 is what a path tracer makes of it. Tolerance: 1 % of the
+// whole, 6 % of a block. Fails if: light bounces once (the whole is then half as bright).
+TEST_F(LongMitsuba, WhiteBox) {
+  expect_same(scripts + "white_box.json", {}, kAll, .01, .06);
 }
 
 // Claim: a rough coat mirrors a lamp as Mitsuba's GGX dielectric does. Tolerance: 1 % of the whole (measured .4 %), 6 % of a
