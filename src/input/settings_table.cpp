@@ -245,9 +245,9 @@ std::span<const Member<Settings>> settings_members() {
           "methods: `bounces`"),
       member<&Settings::bounces>(
           "bounces", whole_number, "", {0, 1}, "1 if one surface can light another", {},
-          "all methods but `volume`: 1: one bounce of light between surfaces, such as from a floor to the "
-          "object on it, or within one body, and all bounces between bodies of `volume_diffusion`; 0: direct "
-          "light only, without re-entry"),
+          "all methods but `volume`: 1: light between surfaces, such as from a floor to the object on it, "
+          "until it fades; from bodies of other methods than `volume_diffusion`, one bounce; 0: direct light "
+          "only, without re-entry"),
       member<&Settings::seed>("seed", whole_number, "", kMostWholeNumber, "",
                               {samples, transfers, exitance, walks, surfaces, gathered, view_surfaces},
                               "random seed; the same seed gives the same image"),

@@ -30,8 +30,8 @@ std::string SubsurfaceMethod::light_stage(const Scene& scene, std::span<const Li
 }
 
 std::string SubsurfaceMethod::bounces_stage() const {
-  return "bounces: light between shapes, one bounce, gathered at the samples and at 64 x 64 points of the "
-         "image, more in corners";
+  return "bounces: light between shapes, gathered at the samples and at 64 x 64 points of the image, more in "
+         "corners";
 }
 
 bool gathers_light(const Scene& scene, const BodyPlan& body) {

@@ -93,7 +93,7 @@ TEST(CliInfo, ModelAndItsError) {
   EXPECT_EQ(named["is_chosen"], false);
   EXPECT_FALSE(named.contains("expected_error"));
   EXPECT_TRUE(contains(run_program({"info", plate, "--method", "volume_diffusion"}).out,
-                       "expected model error 2.7 %\n"))
+                       "expected model error 3.7 %\n"))
       << text.out;
 }
 

@@ -14,7 +14,7 @@ double DirectMethod::seconds_of_pixel(const Scene& scene, const Lighting& lighti
 }
 
 std::string DirectMethod::bounces_stage() const {
-  return "bounces: light between shapes, one bounce, by a ray from each point of entry";
+  return "bounces: light between shapes, by a path from each point of entry";
 }
 
 std::string DirectMethod::shading_stage(const Scene& scene) const {
