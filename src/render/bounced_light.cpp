@@ -37,22 +37,10 @@ Lanes absolute(const Lanes& values) {
   return values < 0 ? -values : values;
 }
 
-// Emptied where others gathered.
-HeldView::Gathering& of_points(HeldView::Gathering& held, const std::vector<std::uint32_t>& points) {
-  if (held.points != points) held = {points, {}};
-  return held;
-}
-
-HeldView::Gathering& gathering_of(std::unique_ptr<HeldView::Gathering>& held,
-                                  const std::vector<std::uint32_t>& points) {
-  if (held == nullptr) held = std::make_unique<HeldView::Gathering>();
-  return of_points(*held, points);
-}
-
 HeldView::Gathering& gathering_of(std::vector<HeldView::Gathering>& by_field, std::size_t field,
                                   const std::vector<std::uint32_t>& points) {
   by_field.resize(std::max(by_field.size(), field + 1));
-  return of_points(by_field[field], points);
+  return gathering_of(by_field[field], points);
 }
 
 }  // namespace

@@ -121,6 +121,17 @@ void for_each_gathered(const GatherInput& input, const UseOfGathered& use) {
   }
 }
 
+HeldView::Gathering& gathering_of(HeldView::Gathering& held, const std::vector<std::uint32_t>& points) {
+  if (held.points != points) held = {points, {}};
+  return held;
+}
+
+HeldView::Gathering& gathering_of(std::unique_ptr<HeldView::Gathering>& held,
+                                  const std::vector<std::uint32_t>& points) {
+  if (held == nullptr) held = std::make_unique<HeldView::Gathering>();
+  return gathering_of(*held, points);
+}
+
 std::vector<RgbF> gathered_irradiance(const GatherInput& input) {
   std::vector<RgbF> irradiance(input.points.size());
   for_each_gathered(input, [&](const SurfaceLight& light) { irradiance[light.point] += light.irradiance; });

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,11 @@ struct SurfaceLight {
 using UseOfGathered = std::function<void(const SurfaceLight&)>;
 
 void for_each_gathered(const GatherInput& input, const UseOfGathered& use);
+
+/// A gathering for some points of a batch, by their indices: emptied if it was for others.
+HeldView::Gathering& gathering_of(HeldView::Gathering& held, const std::vector<std::uint32_t>& points);
+HeldView::Gathering& gathering_of(std::unique_ptr<HeldView::Gathering>& held,
+                                  const std::vector<std::uint32_t>& points);
 
 /// Their sums, one per point, W/mm^2.
 std::vector<RgbF> gathered_irradiance(const GatherInput& input);

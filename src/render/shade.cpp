@@ -105,9 +105,9 @@ Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::
     if (hits.points.empty()) continue;
     const Field& field = *fields_.all[f];
     HeldView::Surface* const known = held != nullptr ? &held->surfaces[f] : nullptr;
-    const std::vector<RgbF> bounced = field.asks_irradiance() && (pass.is_seen || !field.asks_samples())
-                                          ? bounced_at(hits, field.eta(), pass, known)
-                                          : std::vector<RgbF>{};
+    const bool is_asked = pass.is_seen ? field.asks_irradiance() : field.reflects();
+    const std::vector<RgbF> bounced =
+        is_asked ? bounced_at(hits, field.eta(), pass, known) : std::vector<RgbF>{};
     const PointIrradianceInput lighting{input_.rays,
                                         hits.points,
                                         hits.keys,
@@ -130,20 +130,21 @@ Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::
 
 std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
                                      HeldView::Surface* held) const {
-  if (!pass.is_seen) return bounced_further(hits, eta);
+  if (!pass.is_seen) return bounced_further(hits, eta, held);
   if (bounced_ != nullptr) return bounced_->at(hits, eta, held);
   if (pass.gathers == nullptr) return {};
   return gathered_irradiance({input_.rays, *pass.gathers, hits.points, hits.keys, eta, 1,
                               hash_bits(point_irradiance_seed(input_.scene.settings), kGatheringSeed)});
 }
 
-std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, float eta) const {
+std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, float eta, HeldView::Surface* held) const {
   constexpr float kMostLikely = .9f;  // probability of a path's continuation, which ends it in white rooms
   std::vector<RgbF> irradiance(hits.points.size());
   std::vector<SurfacePoint> points;
   std::vector<std::uint64_t> keys;
-  std::vector<std::pair<std::size_t, float>> chosen;  // hit, and its probability
-  for (std::size_t i = 0; i < hits.points.size(); ++i) {
+  std::vector<std::uint32_t> chosen;
+  std::vector<float> probability;
+  for (std::uint32_t i = 0; i < hits.points.size(); ++i) {
     const RgbF albedo =
         hits.textures.empty() ? appearances_[hits.hits[i].mesh].albedo : appearance_of(hits, i).albedo;
     const float likely = std::min(kMostLikely, max_component(albedo));
@@ -151,14 +152,15 @@ std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, float eta) co
     if (!(float(unit_double(key)) < likely)) continue;
     points.push_back(hits.points[i]);
     keys.push_back(hash_bits(key, 1));
-    chosen.emplace_back(i, likely);
+    chosen.push_back(i);
+    probability.push_back(likely);
   }
   if (chosen.empty()) return irradiance;
   const std::vector<RgbF> gathered =
       gathered_irradiance({input_.rays, *this, points, keys, eta, 1,
-                           hash_bits(point_irradiance_seed(input_.scene.settings), kFurtherSeed)});
-  for (std::size_t k = 0; k < chosen.size(); ++k)
-    irradiance[chosen[k].first] = gathered[k] * (1 / chosen[k].second);
+                           hash_bits(point_irradiance_seed(input_.scene.settings), kFurtherSeed),
+                           held != nullptr ? &gathering_of(held->gathering, chosen) : nullptr, input_.view});
+  for (std::size_t k = 0; k < chosen.size(); ++k) irradiance[chosen[k]] = gathered[k] * (1 / probability[k]);
   return irradiance;
 }
 

@@ -106,7 +106,7 @@ class Shader {
   std::vector<RgbF> bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
                                HeldView::Surface* held) const;
   /// The same at hits of gathered rays: by one ray from some of them, chosen in proportion to their albedo.
-  std::vector<RgbF> bounced_further(const SurfaceHits& hits, float eta) const;
+  std::vector<RgbF> bounced_further(const SurfaceHits& hits, float eta, HeldView::Surface* held) const;
   void write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
   static void write_further(const SurfaceHits& hits, std::span<const RgbF> bounced, const RayBatch& batch);

@@ -58,6 +58,8 @@ class Field {
   virtual float eta() const = 0;
   /// True if the exitance depends on the irradiance at the hits themselves.
   virtual bool asks_irradiance() const { return false; }
+  /// True if a part of the exitance at any hit is reflected irradiance.
+  virtual bool reflects() const { return false; }
   /// True if the exitance is summed over samples, point by point.
   virtual bool asks_samples() const { return false; }
 };

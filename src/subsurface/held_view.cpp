@@ -7,8 +7,14 @@ namespace opaline {
 namespace {
 
 template <class Visit>
+void visit_gathered(HeldView::Batch& batch, const Visit& visit);
+
+template <class Visit>
 void visit_gathering(HeldView::Gathering& gathering, const Visit& visit) {
-  for (HeldView::Gathered& part : gathering.parts) visit(part);
+  for (HeldView::Gathered& part : gathering.parts) {
+    visit_gathered(part.seen, visit);  // of further bounces
+    visit(part);
+  }
 }
 
 template <class Visit>

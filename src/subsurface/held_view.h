@@ -37,8 +37,9 @@ struct HeldView {
   struct Surface {
     std::vector<PointTransfers> lights;  ///< one per light, without weights if still to be traced
     QueryPackets packets;
-    std::unique_ptr<Coat> coat;            ///< null: its reflection is still to be computed
-    std::unique_ptr<Gathering> gathering;  ///< for hits without cache points around them (BouncedLight)
+    std::unique_ptr<Coat> coat;  ///< null: its reflection is still to be computed
+    /// For hits without cache points around them (BouncedLight), and for further bounces at gathered hits.
+    std::unique_ptr<Gathering> gathering;
   };
   /// Camera rays shaded together.
   struct Batch {

@@ -79,10 +79,19 @@ TEST(HeldGathering, ColoursAndMediaTraceNothing) {
   expect_none("a point light");
   std::get<QuadLight>(held.scene.lights[1].source).radiance = {1, 2, 9};
   expect_none("a panel");
-  held.scene.shapes[2].reflectance = {.8, .2, .1};
-  expect_none("the floor");
   held.scene.media[0].coefficients = PhysicalMedium{{.01, .02, .03}, {1, 2, 3}};
   expect_none("a medium");
+}
+
+// Claim: an edit of a reflectance traces no more than the paths of further bounces, chosen by reflectances. Tolerance: a
+// quarter of the first image's rays. Fails if: rays of the first bounce are traced again.
+TEST(HeldGathering, ReflectancesTraceFurtherBouncesAlone) {
+  Held held;
+  const std::uint64_t first = held.session.rays().statistics().rays;
+  held.scene.shapes[2].reflectance = {.8, .2, .1};
+  const std::uint64_t again = held.rays();
+  EXPECT_GT(again, kBouncedPlaces);
+  EXPECT_LT(again, first / 4);
 }
 
 // Claim: a light that moved is looked for from what gathered rays met, and another index weighs them anew. Source:

@@ -19,6 +19,7 @@ class CellField : public Field {
                   HeldView::Surface* held) const override;
   float eta() const override { return float(body_.profile.eta); }
   bool asks_irradiance() const override { return local_ != RgbF{}; }
+  bool reflects() const override { return asks_irradiance(); }
 
  private:
   void add_local(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,

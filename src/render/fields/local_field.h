@@ -16,6 +16,7 @@ class LocalField : public Field {
                   HeldView::Surface* held) const override;
   float eta() const override { return eta_; }
   bool asks_irradiance() const override { return true; }
+  bool reflects() const override { return true; }
 
  private:
   std::vector<RgbF> albedos_;

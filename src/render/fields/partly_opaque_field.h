@@ -17,6 +17,7 @@ class PartlyOpaqueField : public Field {
                   HeldView::Surface* held) const override;
   float eta() const override { return inside_->eta(); }
   bool asks_irradiance() const override { return true; }
+  bool reflects() const override { return true; }
   bool asks_samples() const override { return inside_->asks_samples(); }
 
  private:
