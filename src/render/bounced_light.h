@@ -54,7 +54,7 @@ class BouncedPlaces {
     int columns, rows;
     Places places;
     std::vector<RgbF> irradiance;
-    std::vector<RgbF> further;  ///< part of it that had bounced before
+    std::vector<RgbF> further;  ///< its part by earlier bounces
     std::vector<bool> is_near;  ///< true if the gathered surfaces are close, relative to the spacing
 
     Lattice(const Film& film, int pixels);
@@ -62,7 +62,7 @@ class BouncedPlaces {
     /// True if a cache point around this position is near a surface and the irradiance varies.
     bool needs_closer_places(const CameraRays::FilmPlace& seen) const;
     std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point, float eta) const;
-    /// Smooths the part that had bounced before: its paths are noisier, and it varies less.
+    /// Smooths `further`: its paths are noisier, and it varies less.
     void smooth_further();
 
    private:

@@ -38,7 +38,7 @@ struct SurfaceLight {
   Vec3f towards;      ///< the surface; unit
   float distance;     ///< to it, world units
   RgbF irradiance;    ///< irradiance transmitted by the boundary, if any, W/mm^2
-  RgbF further;       ///< part of it that had bounced before
+  RgbF further;       ///< its part by earlier bounces
 };
 
 using UseOfGathered = std::function<void(const SurfaceLight&)>;

@@ -138,7 +138,7 @@ std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const P
 }
 
 std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, float eta, HeldView::Surface* held) const {
-  constexpr float kMostLikely = .9f;  // probability of a path's continuation, which ends it in white rooms
+  constexpr float kMostLikely = .9f;  // probability to continue a path; ends it in white rooms
   std::vector<RgbF> irradiance(hits.points.size());
   std::vector<SurfacePoint> points;
   std::vector<std::uint64_t> keys;

@@ -57,10 +57,10 @@ class Shader {
   Shaded shade(const RayBatch& batch, const Pass& pass, HeldView::Batch* held = nullptr) const;
 
   /// Outgoing radiance along rays that hit surfaces, W/(mm^2 sr): diffuse, and specular under an
-  /// approximately uniform illumination. Traces one ray per light, and paths for the light that has bounced
-  /// more than once between surfaces reflecting at the hit.
+  /// approximately uniform illumination. Traces one ray per light, and paths for light after further
+  /// bounces between surfaces reflecting at the hit.
   /// in    held: cached light transport at these surfaces, extended; or null
-  /// out   further: part of it that has bounced before
+  /// out   further: its part by earlier bounces
   std::vector<RgbF> radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                    HeldView::Batch* held, std::span<RgbF> further) const;
 

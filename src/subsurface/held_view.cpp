@@ -12,7 +12,7 @@ void visit_gathered(HeldView::Batch& batch, const Visit& visit);
 template <class Visit>
 void visit_gathering(HeldView::Gathering& gathering, const Visit& visit) {
   for (HeldView::Gathered& part : gathering.parts) {
-    visit_gathered(part.seen, visit);  // of further bounces
+    visit_gathered(part.seen, visit);  // further bounces
     visit(part);
   }
 }

@@ -186,8 +186,8 @@ DiffusionBody::Solution DiffusionBody::solve(const EnteringLight& light, std::ve
   return solution;
 }
 
-// Adds the light not entering the diffusion problem. Of light crossing a thin body, the part at the samples is more exact than
-// that at the elements; the difference is taken from the collisions.
+// Adds the light not entering the diffusion problem. For light crossing a thin body, values at the samples are more exact than
+// those at the elements; the difference is taken from the collisions.
 void DiffusionBody::take_uncollided(const EnteringLight& light, FirstCollisions& collisions,
                                     Solution& solution, Monitor* monitor) const {
   constexpr double kThin = .01;  // share of light crossing a thin body
