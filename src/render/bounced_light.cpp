@@ -2,12 +2,14 @@
 #include "render/bounced_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
 #include "core/parallel.h"
 #include "core/random.h"
 #include "subsurface/method.h"
+#include "volume/nearest_sample.h"
 
 namespace opaline {
 namespace {
@@ -288,6 +290,41 @@ std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input) {
   return std::make_shared<const BouncedPlaces>(input, Shader(input));
 }
 
+namespace {
+
+/// Means of values at samples with those around them, several times.
+std::vector<RgbF> smoothed(std::span<const SurfaceSample> samples, std::vector<RgbF> values) {
+  constexpr int kTimes = 3;
+  constexpr float kReach = 6;             // spacings
+  constexpr float kLeastAgreement = .7f;  // cosine of the normals
+  double area = 0;
+  for (const SurfaceSample& sample : samples) area += double(sample.area);
+  const auto reach = float(kReach * std::sqrt(area / double(samples.size())));
+  const NearestSample grid(samples, nullptr, kReach);
+  for (int time = 0; time < kTimes; ++time) {
+    std::vector<RgbF> smooth(values.size());
+    parallel_chunks(values.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t i = begin; i < end; ++i) {
+        RgbF sum;
+        float weights = 0;
+        grid.for_near(samples[i].position, reach, [&](const NearestSample::Member& member) {
+          const Vec3f apart = member.position - samples[i].position;
+          const float near = 1 - dot(apart, apart) / (reach * reach);
+          if (!(near > 0 && dot(member.normal, samples[i].normal) > kLeastAgreement)) return;
+          const float weight = near * samples[member.sample].area;
+          sum += values[member.sample] * weight;
+          weights += weight;
+        });
+        smooth[i] = weights > 0 ? sum * (1 / weights) : values[i];
+      }
+    });
+    values = std::move(smooth);
+  }
+  return values;
+}
+
+}  // namespace
+
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
                                                   HeldView* view) {
   const RenderInput lit{input.scene, input.world, input.rays, bodies, input.monitor, view};
@@ -305,23 +342,29 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
         view != nullptr ? &view->at_samples[bounced.size()] : nullptr;
     if (held != nullptr) held->resize(chunk_count(samples.size(), kGatheredAtOnce));
     std::vector<RgbF>& own = bounced.emplace_back(samples.size());
+    std::vector<RgbF> further(samples.size());
     const std::uint64_t seed = hash_bits(input.scene.settings.seed, kSeed + 2 + bounced.size());
     const int rays_each = method_of(body.plan.method).gathered_rays();
-    parallel_chunks(
-        samples.size(), kGatheredAtOnce, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-          std::vector<SurfacePoint> points;
-          std::vector<std::uint64_t> keys;
-          for (std::size_t i = begin; i < end; ++i) {
-            const SurfaceSample& s = samples[i];
-            points.push_back(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v));
-            keys.push_back(i);
-          }
-          const std::vector<RgbF> gathered =
-              gathered_irradiance({input.rays, shader, points, keys, float(body.profile.eta), rays_each, seed,
-                                   held != nullptr ? &(*held)[chunk] : nullptr, view});
-          std::ranges::copy(gathered, own.begin() + std::ptrdiff_t(begin));
-          advance(input.monitor, end - begin);
-        });
+    parallel_chunks(samples.size(), kGatheredAtOnce,
+                    [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                      std::vector<SurfacePoint> points;
+                      std::vector<std::uint64_t> keys;
+                      for (std::size_t i = begin; i < end; ++i) {
+                        const SurfaceSample& s = samples[i];
+                        points.push_back(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v));
+                        keys.push_back(i);
+                      }
+                      for_each_gathered({input.rays, shader, points, keys, float(body.profile.eta), rays_each,
+                                         seed, held != nullptr ? &(*held)[chunk] : nullptr, view},
+                                        [&](const SurfaceLight& light) {
+                                          own[begin + light.point] += light.irradiance;
+                                          further[begin + light.point] += light.further;
+                                        });
+                      advance(input.monitor, end - begin);
+                    });
+    if (std::ranges::all_of(further, [](const RgbF& value) { return value == RgbF{}; })) continue;
+    const std::vector<RgbF> smooth = smoothed(samples, further);
+    for (std::size_t i = 0; i < own.size(); ++i) own[i] += smooth[i] - further[i];
   }
   return bounced;
 }

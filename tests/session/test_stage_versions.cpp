@@ -69,7 +69,7 @@ TEST(StageVersions, ComputeWhatTheyDidButForRounding) {
   scene = lit_ball(Method::hierarchical);
   scene.shapes.push_back(wall);
   scene.settings.bounces = 1;
-  EXPECT_NEAR(mean_of(hierarchical_state(Prepared(scene).bodies[0]).irradiance) / .00144615326, 1, 1e-5)
+  EXPECT_NEAR(mean_of(hierarchical_state(Prepared(scene).bodies[0]).irradiance) / .00144611261, 1, 1e-5)
       << "raise the number of \"bounces\" in update_bounces.cpp";
 
   EXPECT_NEAR(mean_of(volume_diffusion_state(Prepared(lit_ball(Method::volume_diffusion)).bodies[0])
