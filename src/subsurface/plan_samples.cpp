@@ -39,10 +39,10 @@ double widest_spacing(const DiffuseProfile& profile) {
 
 void warn_of_few_samples(const BodyPlan& group, double wanted, std::vector<std::string>& warnings) {
   if (wanted < kSuspiciouslyFew)
-    warnings.push_back(
-        fmt::format("{}: the mean free path of {:.4g} mm requires only {:.1f} samples on {:.4g} mm^2; light "
-                    "crosses the whole object, and diffusion is a poor model; check mm_per_unit",
-                    group.name, group.smallest_mean_free_path, wanted, group.area));
+    warnings.push_back(fmt::format(
+        "{}: light crosses the whole object, with a mean free path of {:.4g} mm and an area of {:.4g} "
+        "mm^2; check mm_per_unit",
+        group.name, group.smallest_mean_free_path, group.area));
 }
 
 /// Number of samples from the settings, if set.

@@ -13,9 +13,9 @@
 namespace opaline {
 namespace {
 
-constexpr float kNarrowest = 1.5f;    // reach of an exit, spacings of the samples
+constexpr float kNarrowest = 2;       // reach of an exit, spacings of the samples
 constexpr float kWidest = 1.5f;       // the same, lattice cells
-constexpr std::size_t kNearest = 8;   // exits within its reach, per direction of the light
+constexpr std::size_t kNearest = 12;  // exits within its reach, per direction of the light
 constexpr float kSameSheet = .5f;     // least cosine between normals of one sheet
 constexpr double kFarthest = 8;       // mean free paths
 constexpr double kLeastShare = 1e-4;  // least flux of a ray, over the largest

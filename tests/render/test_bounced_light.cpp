@@ -394,6 +394,21 @@ TEST(BouncedLight, LeavesNoBlotchesInAWhiteRoom) {
   EXPECT_LT(std::sqrt(square / count), .03);
 }
 
+// Claim: a closed box in bright surroundings is black inside, also where the camera looks exactly at its edges. Source: no
+// light enters. Fails if: shadow rays from an edge start on the plane of the other face (12 pixels are then bright).
+TEST(BouncedLight, DoesNotLeakThroughEdges) {
+  Scene scene = bouncing_scene();
+  scene.shapes = {opaque("room", BoxShape{{-50, -50, -50}, {50, 50, 50}}, Rgb(.8))};
+  scene.lights = {{"sun", DirectionalLight{{-1, -1, -.6}, Rgb(3)}}, {"sky", Surroundings{Rgb(1)}}};
+  scene.camera.position = {0, 0, 49};
+  scene.camera.look_at = {};
+  scene.camera.field_of_view = 80;
+  scene.film.resolution = {128, 128};
+  const Image image = Prepared(scene).picture();
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 128; ++x) ASSERT_EQ(channel(image, x, y, "G"), 0) << x << ' ' << y;
+}
+
 // Claim: light bounces unasked where one thing can light another, and only there: not in a single body, by walks, in the
 // dark, or beside what sends nothing back. Source: bounces_of. Fails if: any of these is forgotten.
 TEST(BouncedLight, IsThereUnasked) {
