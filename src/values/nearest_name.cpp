@@ -286,7 +286,12 @@ std::string did_you_mean_file(const std::string& path) {
   }
   std::ranges::sort(names);  // folders list their files in no order
   const std::vector<std::string_view> views(names.begin(), names.end());
-  const Names near = nearest_name(given.filename().string(), views);
+  Names near = nearest_name(given.filename().string(), views);
+  const std::string stem = given.stem().string();  // a common extension makes no names similar
+  if (!near.empty() &&
+      edit_distance(in_lower_case(stem), in_lower_case(std::filesystem::path(near.front()).stem().string())) >
+          std::max<std::size_t>(1, stem.size() / 3))
+    near.clear();
   // The example scenes have a script that fetches their assets.
   const std::filesystem::path script = folder.parent_path() / "gallery";
   if (near.empty() && folder.filename() == "assets" && std::filesystem::is_regular_file(script, failure))

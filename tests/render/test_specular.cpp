@@ -79,6 +79,7 @@ TEST(Coat, MirrorsTheFloorAsItIsLit) {
     floor.reflectance = {.8, .4, .2};
     scene.shapes.push_back(floor);
     scene.lights = {{"sun", DirectionalLight{{0, -1, 0}, Rgb(3), 0}}};
+    scene.settings.bounces = 0;  // the ball lights the floor
     scene.film.resolution = {1, 1};
     scene.film.samples_per_pixel = 64;
     scene.camera.field_of_view = .01;
