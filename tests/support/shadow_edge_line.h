@@ -23,6 +23,7 @@ inline Scene shadow_edge_scene(bool wide, ProfileKind profile) {
   Shape lid;
   lid.name = "lid";
   lid.source = QuadShape{{-100, 5, -100}, {100, 0, 0}, {0, 0, 200}};
+  lid.reflectance = {};  // sends no light back
   scene.shapes = {translucent("floor", QuadShape{{-10, 0, -10}, {0, 0, 20}, {20, 0, 0}}), lid};
   if (wide)
     scene.lights = {{"lamp", QuadLight{{-5, 17, -5}, {10, 0, 0}, {0, 0, 10}, Rgb(1)}}};
