@@ -44,7 +44,7 @@ TEST(ShapePlaces, ErrorsNameLineAndColumnOfTheScene) {
             "--set shapes.0.file=b.obj: " + folder.file("b.obj") + ": no such mesh file");
   put_bytes(folder.file("dig2.obj"), "");  // its extension alone makes it no similar name
   EXPECT_EQ(world_error(folder, R"({"shapes": [{"file": "dog.obj"}]})"),
-            scene + ":1:21: " + folder.file("dog.obj") + ": no such mesh file");
+            scene + ":1:22: " + folder.file("dog.obj") + ": no such mesh file");
   put_bytes(folder.file("gallery"), "fetches them");
   EXPECT_EQ(world_error(folder, R"({"shapes": [{"file": "assets/a.obj"}]})"),
             scene + ":1:22: " + folder.file("assets/a.obj") + ": no such mesh file (" +
