@@ -237,9 +237,8 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
         point.geometric = -point.geometric;
         point.normal = -point.normal;
       }
-      // Back along the ray: on an edge, the normal alone would lead rays into the other face's plane. Fields of bodies need
-      // positions on the surface.
-      if (!appearances_[hit.mesh].translucent) point.position -= normalized(ray.direction) * point.offset;
+      // Back along the ray: on an edge, the normal alone would lead rays into the other face's plane.
+      point.position -= normalized(ray.direction) * point.offset;
       if (!textures_.empty()) add_textures(batch, i, from_behind, point, own);
       own.points.push_back(point);
       own.hits.push_back(hit);
