@@ -2,7 +2,6 @@
 #include "render/bounced_light.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -292,14 +291,13 @@ std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input) {
 
 namespace {
 
-/// Means of values at samples with those around them, several times.
-std::vector<RgbF> smoothed(std::span<const SurfaceSample> samples, std::vector<RgbF> values) {
+/// Means of values at the samples with those around them, several times.
+std::vector<RgbF> smoothed(const SurfaceSamples& surface, std::vector<RgbF> values) {
   constexpr int kTimes = 3;
   constexpr float kReach = 6;             // spacings
   constexpr float kLeastAgreement = .7f;  // cosine of the normals
-  double area = 0;
-  for (const SurfaceSample& sample : samples) area += double(sample.area);
-  const auto reach = float(kReach * std::sqrt(area / double(samples.size())));
+  const std::vector<SurfaceSample>& samples = surface.samples;
+  const auto reach = float(kReach * surface.spacing());
   const NearestSample grid(samples, nullptr, kReach);
   for (int time = 0; time < kTimes; ++time) {
     std::vector<RgbF> smooth(values.size());
@@ -363,7 +361,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
                       advance(input.monitor, end - begin);
                     });
     if (std::ranges::all_of(further, [](const RgbF& value) { return value == RgbF{}; })) continue;
-    const std::vector<RgbF> smooth = smoothed(samples, further);
+    const std::vector<RgbF> smooth = smoothed(body.surface, further);
     for (std::size_t i = 0; i < own.size(); ++i) own[i] += smooth[i] - further[i];
   }
   return bounced;

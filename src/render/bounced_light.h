@@ -79,8 +79,8 @@ class BouncedPlaces {
   std::size_t chunks_ = 0;         // chunks of gathered cache points
 };
 
-/// Irradiance at each body's samples from surfaces: translucent ones from their trees, opaque ones under
-/// direct light; one list per body. view: cache with HeldView::at_samples for the same samples, extended; or
+/// Irradiance at each body's samples from surfaces: translucent ones from their trees or cells, opaque ones
+/// after all bounces between them; one list per body. view: cache with HeldView::at_samples for the same samples, extended; or
 /// null
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
                                                   HeldView* view = nullptr);

@@ -156,10 +156,11 @@ std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, float eta, He
     probability.push_back(likely);
   }
   if (chosen.empty()) return irradiance;
+  const bool is_kept = held != nullptr && input_.view->keeps_further_bounces;
   const std::vector<RgbF> gathered =
       gathered_irradiance({input_.rays, *this, points, keys, eta, 1,
                            hash_bits(point_irradiance_seed(input_.scene.settings), kFurtherSeed),
-                           held != nullptr ? &gathering_of(held->gathering, chosen) : nullptr, input_.view});
+                           is_kept ? &gathering_of(held->gathering, chosen) : nullptr, input_.view});
   for (std::size_t k = 0; k < chosen.size(); ++k) irradiance[chosen[k]] = gathered[k] * (1 / probability[k]);
   return irradiance;
 }

@@ -106,6 +106,7 @@ std::vector<std::vector<RgbF>> Session::State::gathered_bounces(std::span<BodySt
   const PrecomputeInput& input = bodies.front().input;
   for (BodyStages& stages : bodies) method_of(stages.body.plan.method).remove_bounced(stages);
   HeldView own;  // hits of the first bounce, for the others
+  own.keeps_further_bounces = false;
   HeldView* const held = held_view_of_samples(input);
   HeldView* const view = held != nullptr ? held : &own;
   std::vector<std::vector<RgbF>> all = bounced_at_samples(input, bodies_, view);

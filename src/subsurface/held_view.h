@@ -105,6 +105,7 @@ struct HeldView {
   };
   std::vector<std::vector<Batch>> tiles;  ///< in the order of their batches
   bool has_room = false;                  ///< enough memory for the points
+  bool keeps_further_bounces = true;      ///< false: traces them again, to save memory
   std::unique_ptr<std::atomic<std::size_t>> coat_bytes = std::make_unique<std::atomic<std::size_t>>(0);
 
   /// Gathering for the points of BouncedPlaces, by chunk and field, and for the samples of each body, by

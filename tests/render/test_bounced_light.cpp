@@ -370,8 +370,7 @@ TEST(BouncedLight, LeavesNoBlotchesBesideABrightBody) {
 }
 
 // Claim: a marble ball in a white room has no blotches on its dark side: neighbouring samples are alike. Source: it is lit by
-// all of the room there. Tolerance: 3 % rms; measured 1.8. Fails if: the paths of light that has bounced twice or more are
-// not smoothed (7.1).
+// all of the room there. Tolerance: 3 % rms; measured 1.8. Fails if: light of further bounces is not smoothed (7.1).
 TEST(BouncedLight, LeavesNoBlotchesInAWhiteRoom) {
   Scene scene = bouncing_scene();
   scene.media = {marble()};

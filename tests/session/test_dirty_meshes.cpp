@@ -64,8 +64,9 @@ Image picture_of_ball(const Soup& soup) {
 }
 
 // Claim: 1 % of the triangles doubled, reversed, removed or split on one side, or a second sphere inside, change the mean of
-// the default image by less than half of its error against random walks, 1 %. Tolerance: .4 %, of a
-// ball large enough for the cells of its medium, as more area would change smaller ones. Fails if: holes and slits leave the ball open (18 %), or inner surfaces are counted.
+// the default image by less than half of its error against random walks, 1 %. Tolerance: .4 %, with a
+// ball large enough for the cells of its medium: in smaller ones, the area of the inner sphere would change the cells. Fails
+// if: holes and slits leave the ball open (18 %), or inner surfaces are counted.
 TEST(DirtyMeshes, AreRenderedAsCleanOnes) {
   const Image clean = picture_of_ball(mesh_test::sphere(10));
   for (const auto& [name, soup] : dirty_balls())

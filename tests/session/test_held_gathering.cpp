@@ -79,6 +79,9 @@ TEST(HeldGathering, ColoursAndMediaTraceNothing) {
   expect_none("a point light");
   std::get<QuadLight>(held.scene.lights[1].source).radiance = {1, 2, 9};
   expect_none("a panel");
+  const double largest = max_component(held.scene.shapes[2].reflectance);
+  held.scene.shapes[2].reflectance = {largest, .2, .1};
+  expect_none("the floor's hue");
   held.scene.media[0].coefficients = PhysicalMedium{{.01, .02, .03}, {1, 2, 3}};
   expect_none("a medium");
 }

@@ -47,8 +47,8 @@ double difference_of_halves(const std::vector<std::uint16_t>& a, const std::vect
 
 // Claim: all layers are those of a picture that is rendered in the other light, to the rounding of floats where all
 // channels have one factor; else 99 % of the light to the tolerance that the tree is asked for, and the error layer to a tenth.
-// Source: lit_anew.h. Tolerance: 1e-4, of sums of thousands of floats and a solver's steps; settings.tolerance. Fails if: a layer that light
-// is in stays, or one that it is not in is scaled.
+// Source: lit_anew.h. Tolerance: 1e-4, for sums of thousands of floats and a solver's steps; settings.tolerance. Fails if: a
+// layer with light stays, or one without light is scaled.
 TEST(LitAnew, IsWhatIsRendered) {
   const ViewFolder folder;
   for (const char* method : {"hierarchical", "lambert", "volume_diffusion"}) {
