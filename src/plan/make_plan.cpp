@@ -76,7 +76,7 @@ void check_bounces(const Scene& scene) {
 }
 
 // Memory of the points gathering bounced light, and of more in corners; bench_plan.
-constexpr std::size_t kBytesOfBouncePlaces = 50'000'000;
+constexpr std::size_t kBytesOfBouncePlaces = 30'000'000;
 
 /// Text for a medium with textures that could vary inside a body; else empty.
 std::string medium_stage(const Medium& medium, Method method) {

@@ -17,7 +17,7 @@ constexpr std::uint64_t kSeed = 4000;
 // Gathered rays: from a hit without cached irradiance; from a cache point, per pixel of its spacing, at least
 // and at most. Closer cache points use the maximum.
 constexpr int kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
-constexpr std::size_t kPlacesAtOnce = 256;  // each of many rays, and the threads share them
+constexpr std::size_t kPlacesAtOnce = 128;  // each of many rays, and the threads share them
 constexpr int kAcross = 64;                 // cache points along the image's longer side, first lattice
 constexpr int kAround = 2;                  // beyond each border
 constexpr std::size_t kLattices = 3;
