@@ -146,7 +146,11 @@ void check_exr_chunks(const std::string& path) try {
 } catch (const Error&) {
   throw;
 } catch (const std::exception& failure) {
-  throw bad_file(path, std::string("the image is damaged: ") + failure.what());
+  // OpenEXR repeats the file's name on each level.
+  const std::string repeated = "Error reading pixel data from image file \"" + path + "\". ";
+  std::string complaint = failure.what();
+  while (complaint.starts_with(repeated)) complaint.erase(0, repeated.size());
+  throw bad_file(path, "the image is damaged: " + complaint);
 }
 
 }  // namespace opaline

@@ -30,11 +30,11 @@ Camera read_camera(const std::optional<Value>& value, double mm_per_unit) {
   if (up) camera.up = up->triple();
   if (const auto field_of_view = reader.find("field_of_view")) camera.field_of_view = field_of_view->number();
   const Vec3d view = normalized(camera.look_at - camera.position);
-  if (view == Vec3d{})
-    (look_at    ? *look_at
-     : position ? *position
-                : *value)
-        .fail("defines no view direction", "'look_at' different from 'position'");
+  if (view == Vec3d{}) {
+    if (position && (!look_at || position->node().override_index > look_at->node().override_index))
+      position->fail("defines no view direction", "'position' different from 'look_at'");
+    (look_at ? *look_at : *value).fail("defines no view direction", "'look_at' different from 'position'");
+  }
   if (length(cross(view, normalized(camera.up))) < 1e-6)
     (up ? *up : *value)
         .fail("leaves the camera roll undefined: 'up' is parallel to the view direction or zero",

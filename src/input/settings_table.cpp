@@ -125,8 +125,13 @@ void read_resolution(Film& film, const Value& value, double) {
 void read_crop(Film& film, const Value& value, double) {
   const std::vector<Value> ends = value.list(4, "[x0, y0, x1, y1]");
   std::array<int, 4>& crop = film.crop.emplace();
-  for (std::size_t i = 0; i < 4; ++i)
-    crop[i] = static_cast<int>(ends[i].whole_number(0, static_cast<std::uint64_t>(film.resolution[i % 2])));
+  for (std::size_t i = 0; i < 4; ++i) {
+    crop[i] = static_cast<int>(ends[i].whole_number());
+    const int largest = film.resolution[i % 2];
+    if (crop[i] > largest)
+      ends[i].fail("is out of range", fmt::format("a whole number from 0 to {}, the image's {}", largest,
+                                                  i % 2 == 0 ? "width" : "height"));
+  }
   if (crop[0] >= crop[2] || crop[1] >= crop[3]) value.fail("contains no pixels", "x0 < x1 and y0 < y1");
 }
 

@@ -14,6 +14,6 @@ namespace opaline {
 std::vector<BodyPlan> find_groups(const Scene& scene, const World& world, std::vector<std::string>& warnings);
 
 /// Model of a body by the profile of its medium (choose_models).
-BodyModel planned_model(const Scene& scene, const BodyPlan& group);
+BodyModel planned_model(const Scene& scene, const World& world, const BodyPlan& group);
 
 }  // namespace opaline

@@ -14,8 +14,10 @@
 #include "diffusion/diffuse_profile.h"
 #include "plan/body_groups.h"
 #include "plan/expected_error.h"
+#include "plan/local_thickness.h"
 #include "scene/names.h"
 #include "scene/scene_properties.h"
+#include "subsurface/method.h"
 
 namespace opaline {
 namespace {
@@ -71,6 +73,20 @@ BodyShape shape_of(const BodyPlan& group) {
   return {group.area, group.thickness, group.alignment};
 }
 
+// Root mean square over the places: ears are more wrong than the head.
+double error_of_diffusion(const BodyShape& shape, double thickness, const MediumExtremes& medium) {
+  constexpr double kMost = .5;  // largest error of a place, unless that of the mean thickness is larger
+  const double of_mean = kErrorOfDiffusion.at(thickness / medium.mean_free_path, medium);
+  if (shape.local.empty()) return of_mean;
+  double squares = 0;
+  for (const double local : shape.local) {
+    const double mean_free_paths = std::min(local, thickness) / medium.mean_free_path;
+    const double error = std::min(std::max(kMost, of_mean), kErrorOfDiffusion.at(mean_free_paths, medium));
+    squares += error * error;
+  }
+  return std::sqrt(squares / double(shape.local.size()));
+}
+
 std::string two_digits(double value) {
   return value < 100 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
 }
@@ -112,7 +128,7 @@ BodyModel choose_model(const Medium& medium, const BodyShape& shape) {
   }
   const double mean_free_paths = thickness / extremes.mean_free_path;
   model.expected_error = (is_flat ? kErrorOfPlates : kErrorOfBodies).at(mean_free_paths, extremes);
-  model.expected_error_of_diffusion = kErrorOfDiffusion.at(mean_free_paths, extremes);
+  model.expected_error_of_diffusion = error_of_diffusion(shape, thickness, extremes);
   const std::string size = fmt::format("{} mm{} ({})", two_digits(thickness),
                                        mean_free_paths_text(mean_free_paths), extremes.channels);
   if (is_flat && thickness < kCrossed * extremes.diffuse_mean_free_path) {
@@ -141,9 +157,12 @@ std::string model_error_text(const BodyModel& model, Method method, bool reenter
   return text + "; --method volume_diffusion: " + percent_text(*model.expected_error_of_diffusion);
 }
 
-BodyModel planned_model(const Scene& scene, const BodyPlan& group) {
+BodyModel planned_model(const Scene& scene, const World& world, const BodyPlan& group) {
   const Medium& medium = scene.media[group.medium];
-  BodyModel model = choose_model(medium, shape_of(group));
+  BodyShape shape = shape_of(group);
+  if (method_of(scene.settings.method).has_model() && shape.thickness > 0)
+    shape.local = local_thicknesses(world, group.meshes);
+  BodyModel model = choose_model(medium, shape);
   if (medium.profile) {
     model.is_chosen = false;
     model.reason = "set by the scene";

@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "bodies/plan.h"
 #include "geometry/world.h"
@@ -17,6 +18,7 @@ struct BodyShape {
   /// Mean squared cosine between the normals of two points of the surface: 1 of a thin plate, 1/2 of a rod,
   /// 1/3 of a sphere or a cube.
   double alignment = 0;
+  std::vector<double> local = {};  ///< thickness at places of equal area, mm; empty: the mean everywhere
 
   /// Thickness of a square plate with this area and mean thickness, mm: its rim is part of the area.
   double plate_thickness() const;

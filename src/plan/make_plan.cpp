@@ -214,7 +214,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   const std::vector<Light> lights = recentred_lights(scene, world);
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
-  for (BodyPlan& group : plan.groups) group.model = planned_model(scene, group);
+  for (BodyPlan& group : plan.groups) group.model = planned_model(scene, world, group);
   plan.warnings.insert(plan.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   std::set<std::string> said;  // reported by the first of several shapes from one file
   for (const MeshReport& report : world.reports)

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "lights/light.h"
 #include "volume/body_walks.h"
+#include "volume/outer_shares.h"
 #include "volume/walk_memory.h"
 
 namespace opaline {
@@ -103,15 +104,19 @@ struct Noise {
 
 class Evaluation {
  public:
-  Evaluation(const VolumeInput& input, const VolumeSums& sums)
-      : input_(input), sums_(sums), area_of_start_(surface_area_of(input) / double(starts_of(input))) {
+  /// outer: outer_shares; empty: the whole cells
+  Evaluation(const VolumeInput& input, const VolumeSums& sums, std::span<const float> outer = {})
+      : input_(input),
+        sums_(sums),
+        outer_(outer),
+        area_of_start_(surface_area_of(input) / double(starts_of(input))) {
     for (std::size_t c = 0; c < 3; ++c) walked_[c] = walked_channel(input, c);
     for (std::size_t s = 0; s < sums.sources.size(); ++s) weights_.push_back(weight_of(input, s));
   }
 
   /// Exitance of a cell from one source, and its variance.
   PassMean part(std::size_t source, std::size_t channel, std::size_t i) const {
-    const double area = double(input_.samples[i].area);
+    const double area = outer_area(i);
     const double scale = area > 0 ? weights_[source][channel] * area_of_start_ / area : 0;
     const PassMean pass = pass_mean_of(sums_.sources[source].channels[walked_[channel]], i);
     return {pass.mean * scale, pass.variance * scale * scale};
@@ -142,7 +147,7 @@ class Evaluation {
       }
       const auto scale = [&](std::size_t i) {
         const double square = cells[i].mean * cells[i].mean + 1e-4 * largest * largest;
-        return square > 0 ? double(input_.samples[i].area) / (square * area) : 0;
+        return square > 0 ? outer_area(i) / (square * area) : 0;
       };
       double sum = 0;
       for (std::size_t i = 0; i < cells.size(); ++i) sum += cells[i].variance * scale(i);
@@ -159,8 +164,14 @@ class Evaluation {
   }
 
  private:
+  double outer_area(std::size_t i) const {
+    const double area = double(input_.samples[i].area);
+    return outer_.empty() ? area : is_mostly_inside(outer_[i]) ? 0 : area * double(outer_[i]);
+  }
+
   const VolumeInput& input_;
   const VolumeSums& sums_;
+  std::span<const float> outer_;
   double area_of_start_;
   std::array<std::size_t, 3> walked_;
   std::vector<Rgb> weights_;
@@ -338,8 +349,9 @@ void walk_volume(const VolumeInput& input, VolumeSums& sums,
 
 VolumeExitance exitance_of(const VolumeInput& input, const VolumeSums& sums) {
   VolumeExitance result;
-  result.has_inner_sheets = BodyInside(input.rays, input.world, input.meshes).overlaps();
-  const Evaluation evaluation(input, sums);
+  if (BodyInside(input.rays, input.world, input.meshes).overlaps())
+    result.outer_shares = outer_shares(input.rays, input.world, input.meshes, input.samples);
+  const Evaluation evaluation(input, sums, result.outer_shares);
   for (std::size_t i = 0; i < input.samples.size(); ++i) {
     Rgb mean{}, error{};
     for (std::size_t c = 0; c < 3; ++c) {

@@ -64,8 +64,14 @@ struct VolumeExitance {
   double relative_error =
       0;                  ///< rms over the surface of error over sqrt(exitance^2 + (1 % of the largest)^2)
   Rgb lost{}, stopped{};  ///< fractions of the transmitted light: see WalkSums
-  bool has_inner_sheets = false;  ///< parts of the body overlap or touch, or its surface crosses itself
+  /// See outer_shares(): empty unless parts of the body overlap or touch, or its surface crosses itself.
+  std::vector<float> outer_shares = {};
 };
+
+/// True if a cell of this outer share is too small a part of the solid's boundary for its own exitance.
+inline bool is_mostly_inside(float outer_share) {
+  return outer_share < .1f;
+}
 
 /// True if each light has its own walks, independent of its colour; only with few lights.
 bool walks_by_light(const VolumeInput& input);

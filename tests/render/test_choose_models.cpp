@@ -2,11 +2,14 @@
 // The profile that a body gets where its medium leaves it open.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "input/load_scene.h"
 #include "plan/choose_models.h"
+#include "plan/local_thickness.h"
 #include "plan/make_plan.h"
 #include "support/scenes.h"
 
@@ -148,6 +151,40 @@ TEST(ChooseModels, ExpectedErrorsAreThoseMeasured) {
               {{{"marble", 15.5, 3.5}, {"wholemilk", 11.9, 3.4}, {"skin1", 36.2, 8.7}}});
   const BodyShape bunny{6002, 8.33, 1 / 3.};
   expect_rows(bunny, {{{"marble", 12.6, 2.3}, {"wholemilk", 12.5, 2.8}, {"skin1", 54.2, 7.2}}});
+}
+
+// Claim: thickness is measured at places: everywhere of a plate its own but at the rim, of a ball .8 of the diameter (the
+// least depth within a slope of 1/2 about the normal), none of a place that faces nothing. Source: by hand. Tolerance: 1 %;
+// 5 % of the ball. Fails if: the distance to the opposite place is taken for the depth.
+TEST(ChooseModels, LocalThickness) {
+  const auto median_of = [](ShapeSource source) {
+    const Scene scene = single_shape(std::move(source), marble(), 500);
+    const World world = make_world(scene);
+    std::vector<double> thicknesses = local_thicknesses(world, std::array<std::uint32_t, 1>{0});
+    std::ranges::nth_element(thicknesses, thicknesses.begin() + std::ptrdiff_t(thicknesses.size() / 2));
+    return thicknesses[thicknesses.size() / 2];
+  };
+  EXPECT_NEAR(median_of(SlabShape{{}, 30, 30, 1}), 1, .01);
+  EXPECT_NEAR(median_of(SphereShape{{}, 12.5}), 20, 1);
+  EXPECT_FALSE(std::isfinite(median_of(QuadShape{{}, {10, 0, 0}, {0, 10, 0}})));
+}
+
+// Claim: thin parts of a thick body raise its expected error of volume_diffusion: a ball with two ears lit from behind.
+// Source: `render --method volume --until-error 4%` of such a body at 96 x 96, rms of red: 7.9 and 6.9 % with ears of .3
+// and .6 mm; skin1 12.9 % with .6. Tolerance: a factor of 1.6. Fails if: the mean thickness stands for all places (3.1
+// and 2.9 %).
+TEST(ChooseModels, EarsAreExpectedToBeLessExact) {
+  const auto expected = [](double thickness, const std::string& medium) {
+    Scene scene = single_shape(SphereShape{{}, 3}, preset(medium), 500);
+    for (const double side : {-1., 1.})
+      scene.shapes.push_back(translucent(
+          "ear", BoxShape{{3.2 * side - 1.5, 1, -thickness / 2}, {3.2 * side + 1.5, 5, thickness / 2}}));
+    for (Shape& shape : scene.shapes) shape.group = "head";
+    return 100 * *bodies_of(scene).at(0).model.expected_error_of_diffusion;
+  };
+  EXPECT_NEAR(std::log(expected(.3, "marble") / 7.9), 0, std::log(1.6));
+  EXPECT_NEAR(std::log(expected(.6, "marble") / 6.9), 0, std::log(1.6));
+  EXPECT_NEAR(std::log(expected(.6, "skin1") / 12.9), 0, std::log(1.6));
 }
 
 }  // namespace

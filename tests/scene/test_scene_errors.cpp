@@ -39,7 +39,7 @@ TEST(SceneErrors, NameThePlace) {
       {R"({"film": {"resolution": [1, @1e9]}})", {"'film.resolution.1'", "65536", "got 1e9"}},
       {R"({"film": {"resolution": @[65536, 65536]}})", {"too many pixels", "2^28"}},
       {R"({"film": {"resolution": @[64]}})", {"[width, height]", "got [64]"}},
-      {R"({"film": {"resolution": [64, 64], "crop": [0, 0, @65, 1]}})", {"'film.crop.2'", "0 to 64"}},
+      {R"({"film": {"resolution": [64, 64], "crop": [0, 0, @65, 1]}})", {"'film.crop.2'", "0 to 64, the image's width"}},
       {R"({"film": {"crop": @[8, 0, 8, 1]}})", {"contains no pixels", "x0 < x1"}},
       {R"({"camera": {"field_of_view": @180}})", {"'camera.field_of_view'", "(0, 180)", "got 180"}},
       {R"({"camera": {"position": [1, 2, 3], "look_at": @[1, 2, 3]}})",

@@ -102,6 +102,7 @@ TEST(SceneOverrides, Errors) {
       {"film.resolution=[64,0]", set("film.resolution=[64,0]"), 0, {"'film.resolution.1'", "got 0"}},
       {"film.exposure=1e999", set("film.exposure=1e999"), 0, {"'film.exposure'", "1e999"}},
       {"film.resolution=[64,64]", "test.json", 5, {"'film.crop.2'", "0 to 64"}},
+      {"camera.position=[0,0,0]", set("camera.position=[0,0,0]"), 0, {"'camera.position' defines no view"}},
       {"shapes.bunny.medium=skn", set("shapes.bunny.medium=skn"), 0, {"did you mean 'skin'?"}},
       {"shapes.buny.medium=skin",
        set("shapes.buny.medium=skin"),

@@ -18,11 +18,9 @@ std::vector<std::string> cell_warnings(const Body& body, const VolumeExitance& e
         fmt::format("{}: {:.2g} % of the transmitted light ends at other shapes inside the body; move the "
                     "shapes apart, or put shapes of one medium into one group",
                     body.plan.name, 100 * stopped));
-  if (exitance.has_inner_sheets)
-    warnings.push_back(
-        fmt::format("{}: parts of the surface lie inside the body; random walks pass through them, and their "
-                    "samples are dark",
-                    body.plan.name));
+  if (!exitance.outer_shares.empty())
+    warnings.push_back(fmt::format(
+        "{}: parts of the surface lie inside the body; random walks pass through them", body.plan.name));
   return warnings;
 }
 

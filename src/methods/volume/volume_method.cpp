@@ -71,6 +71,21 @@ VolumeSums known_sums(VolumeState& state, const WalkStore& store, std::span<cons
   return sums;
 }
 
+/// Fit of the cells at the boundary of the solid.
+std::shared_ptr<const CellFit> fit_of(BodyStages& stages, const VolumeExitance& exitance,
+                                      ReusedWeights& weights) {
+  if (exitance.outer_shares.empty()) return fit_cells(stages, weights, exitance.exitance, exitance.error);
+  std::vector<SurfaceSample> samples;
+  std::vector<RgbF> means, errors;
+  for (std::size_t i = 0; i < exitance.outer_shares.size(); ++i) {
+    if (is_mostly_inside(exitance.outer_shares[i])) continue;
+    samples.push_back(stages.body.surface.samples[i]);
+    means.push_back(exitance.exitance[i]);
+    errors.push_back(exitance.error[i]);
+  }
+  return std::make_shared<const CellFit>(samples, means, errors);
+}
+
 }  // namespace
 
 const VolumeState& volume_state(const Body& body) {
@@ -106,7 +121,7 @@ void VolumeMethod::prepare(BodyStages& stages) const {
   for (const Light& light : stages.lights) key.add(emission(light));
   stages.store.get(state.exitance, key.key(), [&] {
     VolumeExitance exitance = exitance_of(walks, state.walks);
-    state.fit = fit_cells(stages, state.weights, exitance.exitance, exitance.error);
+    state.fit = fit_of(stages, exitance, state.weights);
     return exitance;
   });
   stages.note(passes > before ? "random walks traced" : "random walks reused");
