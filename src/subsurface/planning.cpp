@@ -10,10 +10,12 @@ namespace opaline {
 Lighting lighting_of(const Scene& scene) {
   Lighting all;
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+    const bool is_point = is_delta(scene.lights[l]);
+    all.directions += is_point ? 1 : 8;
     if (l > 0 && share_rays(scene.lights[l - 1], scene.lights[l])) continue;
     all.rays += shadow_rays(scene.lights[l], scene.settings.light_samples);
     all.lights += 1;
-    all.directions += is_delta(scene.lights[l]) ? 1 : 8;
+    if (!is_point) all.extended_lights += 1;
   }
   return all;
 }

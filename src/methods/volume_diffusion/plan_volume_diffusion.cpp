@@ -55,11 +55,15 @@ void warn_of_open_mesh(const Scene& scene, const BodyPlan& body, std::vector<std
 
 /// CPU seconds to trace the light transmitted at a sample from one direction.
 double seconds_of_entry(const Medium& medium, const BodyPlan& body) {
-  constexpr double kEntry = 2e-7;      // per direction of incident light at a sample
-  constexpr double kEntryCell = 9e-8;  // per cell crossed by this light
-  constexpr double kMostCrossed = 50;  // cells far inside are larger
-  const double longest = max_component(make_diffuse_profile(medium).mean_free_path);
-  return kEntry + kEntryCell * std::min(kMostCrossed, std::min(longest, body.thickness) / body.cell);
+  constexpr double kEntry = 8e-7;        // per direction of incident light at a sample
+  constexpr double kEntryStep = 1.5e-7;  // per step of this light through cells
+  constexpr double kStep = .4;           // cells: BodyPaths::kStep
+  constexpr double kMostSteps = 100;     // cells far inside are larger
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  const double amplitude = (profile.eta - 1) / (profile.eta + 1);
+  const double crossings = 1 / (1 - std::min(.9, amplitude * amplitude));  // reflected inside
+  const double path = std::min(max_component(profile.mean_free_path), crossings * body.thickness);
+  return kEntry + kEntryStep * std::min(kMostSteps, path / (kStep * body.cell));
 }
 
 }  // namespace
