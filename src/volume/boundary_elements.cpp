@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -148,24 +149,24 @@ class Cutter {
  public:
   Cutter(const World& world, const Lattice& lattice) : world_(world), lattice_(lattice), table_(lattice) {}
 
+  /// Cuts in parallel, and adds the parts in the order of their triangles.
   void add(std::uint32_t m) {
-    const Mesh& mesh = world_.meshes[m];
-    std::vector<Vec3d> corners;
-    corners.reserve(mesh.positions.size());
-    for (const Vec3d& p : mesh.positions) corners.push_back(lattice_.into(p));
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [i, j, k] = mesh.triangles[t];
-      const Vec3d &a = mesh.positions[i], &b = mesh.positions[j], &c = mesh.positions[k];
-      const Vec3d across = cross(b - a, c - a);
-      const double doubled = length(across);
-      if (!(doubled > 0)) continue;
-      const Vec3d normal = across / doubled;
-      Polygon triangle;
-      for (const std::uint32_t corner : {i, j, k}) triangle.add(corners[corner]);
-      cut(triangle, 0, [&](const Polygon& x) {
-        cut(x, 1,
-            [&](const Polygon& y) { cut(y, 2, [&](const Polygon& part) { add(part, normal, m, t); }); });
-      });
+    const std::vector<Vec3d> corners = corners_of(m);
+    const std::size_t triangles = world_.meshes[m].triangles.size();
+    constexpr std::size_t kAtOnce = 256, kChunks = 256;  // triangles of a chunk, chunks in memory
+    for (std::size_t first = 0; first < triangles; first += kAtOnce * kChunks) {
+      std::array<std::vector<CutPart>, kChunks> chunks;
+      parallel_chunks(std::min(triangles - first, kAtOnce * kChunks), kAtOnce,
+                      [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+                        for (std::size_t t = first + begin; t < first + end; ++t)
+                          cut_triangle(m, std::uint32_t(t), corners,
+                                       [&](const Polygon& part, const Vec3d& normal) {
+                                         if (const std::optional<Placed> placed = placed_of(part, normal))
+                                           chunks[chunk].push_back({*placed, normal, std::uint32_t(t)});
+                                       });
+                      });
+      for (const std::vector<CutPart>& chunk : chunks)
+        for (const auto& [placed, normal, t] : chunk) add(placed, normal, m, t);
     }
   }
 
@@ -177,10 +178,19 @@ class Cutter {
     if (is_folded.empty()) return;
     parts_.clear();
     table_ = ElementTable(lattice_);
-    outer_ = &outer;
-    is_folded_ = &is_folded;
-    for (const std::uint32_t m : meshes) add(m);
-    outer_ = nullptr;
+    std::size_t next = 0;
+    for (const std::uint32_t m : meshes) {
+      const std::vector<Vec3d> corners = corners_of(m);
+      for (std::uint32_t t = 0; t < world_.meshes[m].triangles.size(); ++t)
+        cut_triangle(m, t, corners, [&](const Polygon& part, const Vec3d& normal) {
+          const std::optional<Placed> placed = placed_of(part, normal);
+          if (!placed) return;
+          if (is_folded[next++])
+            add_pieces(outer, part, normal, m, t);
+          else
+            add(*placed, normal, m, t);
+        });
+    }
   }
 
   CutSurface take() const {
@@ -191,8 +201,12 @@ class Cutter {
     std::ranges::sort(order, {},
                       [&](std::uint32_t i) { return std::tuple(middles[i]->mesh, middles[i]->triangle, i); });
     CutSurface result;
+    result.surface.samples.resize(order.size());
+    parallel_chunks(order.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (std::size_t s = begin; s < end; ++s)
+        result.surface.samples[s] = sample_of(elements[order[s]], *middles[order[s]]);
+    });
     for (const std::uint32_t i : order) {
-      result.surface.samples.push_back(sample_of(elements[i], *middles[i]));
       result.normals.push_back(elements[i].normal);
       result.surface.area += double(elements[i].area);
     }
@@ -202,7 +216,43 @@ class Cutter {
  private:
   static constexpr double kLeastArea = 1e-9;  // least area of a cell's face
 
-  void add(const Polygon& part, const Vec3d& normal, std::uint32_t mesh, std::uint32_t triangle) {
+  struct Placed {
+    Vec3d position;  // mean
+    double area;
+  };
+  struct CutPart {
+    Placed placed;
+    Vec3d normal;
+    std::uint32_t triangle;
+  };
+
+  std::vector<Vec3d> corners_of(std::uint32_t m) const {
+    std::vector<Vec3d> corners;
+    corners.reserve(world_.meshes[m].positions.size());
+    for (const Vec3d& p : world_.meshes[m].positions) corners.push_back(lattice_.into(p));
+    return corners;
+  }
+
+  /// Calls found(polygon, normal) for the part of a triangle in each cell.
+  template <class Found>
+  void cut_triangle(std::uint32_t m, std::uint32_t t, std::span<const Vec3d> corners,
+                    const Found& found) const {
+    const Mesh& mesh = world_.meshes[m];
+    const auto& [i, j, k] = mesh.triangles[t];
+    const Vec3d &a = mesh.positions[i], &b = mesh.positions[j], &c = mesh.positions[k];
+    const Vec3d across = cross(b - a, c - a);
+    const double doubled = length(across);
+    if (!(doubled > 0)) return;
+    const Vec3d normal = across / doubled;
+    Polygon triangle;
+    for (const std::uint32_t corner : {i, j, k}) triangle.add(corners[corner]);
+    cut(triangle, 0, [&](const Polygon& x) {
+      cut(x, 1, [&](const Polygon& y) { cut(y, 2, [&](const Polygon& part) { found(part, normal); }); });
+    });
+  }
+
+  /// In the world; none if the part is too small.
+  std::optional<Placed> placed_of(const Polygon& part, const Vec3d& normal) const {
     Vec3d sum{};
     double area = 0;
     for (std::size_t i = 2; i < part.count; ++i) {
@@ -212,11 +262,13 @@ class Cutter {
       area += doubled;
     }
     area *= .5;
-    if (!(area > kLeastArea)) return;
-    if (outer_ != nullptr && (*is_folded_)[next_++]) return add_pieces(part, normal, mesh, triangle);
-    const Vec3d position = sum / (6 * area) * lattice_.cell + lattice_.low;
-    area *= lattice_.cell * lattice_.cell;
-    parts_.push_back({Vec3f(position), mesh, triangle, table_.add(position, normal, area)});
+    if (!(area > kLeastArea)) return {};
+    return Placed{sum / (6 * area) * lattice_.cell + lattice_.low, area * (lattice_.cell * lattice_.cell)};
+  }
+
+  void add(const Placed& placed, const Vec3d& normal, std::uint32_t mesh, std::uint32_t triangle) {
+    parts_.push_back(
+        {Vec3f(placed.position), mesh, triangle, table_.add(placed.position, normal, placed.area)});
   }
 
   Vec3d unit_normal(std::uint32_t mesh, std::uint32_t triangle) const {
@@ -267,27 +319,28 @@ class Cutter {
     return result;
   }
 
-  void add_pieces(const Polygon& part, const Vec3d& normal, std::uint32_t mesh, std::uint32_t triangle) {
+  void add_pieces(const OuterSurface& outer, const Polygon& part, const Vec3d& normal, std::uint32_t mesh,
+                  std::uint32_t triangle) {
     constexpr int kSplit = 3;  // subdivision of each side of a triangle
     for (std::size_t i = 2; i < part.count; ++i) {
       const Vec3d &a = part.corners[0], b = part.corners[i - 1] - a, c = part.corners[i] - a;
       const double area = .5 * dot(cross(b, c), normal) / (kSplit * kSplit);
       for (int v = 0; v < kSplit; ++v)
         for (int u = 0; u + v < kSplit; ++u) {
-          add_piece(a + b * ((u + 1 / 3.) / kSplit) + c * ((v + 1 / 3.) / kSplit), area, normal, mesh,
+          add_piece(outer, a + b * ((u + 1 / 3.) / kSplit) + c * ((v + 1 / 3.) / kSplit), area, normal, mesh,
                     triangle);
           if (u + v + 1 < kSplit)
-            add_piece(a + b * ((u + 2 / 3.) / kSplit) + c * ((v + 2 / 3.) / kSplit), area, normal, mesh,
-                      triangle);
+            add_piece(outer, a + b * ((u + 2 / 3.) / kSplit) + c * ((v + 2 / 3.) / kSplit), area, normal,
+                      mesh, triangle);
         }
     }
   }
 
   /// middle, area: in the lattice
-  void add_piece(const Vec3d& middle, double area, const Vec3d& normal, std::uint32_t mesh,
-                 std::uint32_t triangle) {
+  void add_piece(const OuterSurface& outer, const Vec3d& middle, double area, const Vec3d& normal,
+                 std::uint32_t mesh, std::uint32_t triangle) {
     const Vec3d position = middle * lattice_.cell + lattice_.low;
-    const auto [share, is_turned] = outer_->of({Vec3f(position), normal, mesh, triangle});
+    const auto [share, is_turned] = outer.of({Vec3f(position), normal, mesh, triangle});
     area *= double(share) * lattice_.cell * lattice_.cell;
     if (!(area > 0)) return;
     const std::uint32_t element = table_.add(position, is_turned ? -normal : normal, area);
@@ -334,9 +387,6 @@ class Cutter {
   const Lattice& lattice_;
   ElementTable table_;
   std::vector<Part> parts_;
-  const OuterSurface* outer_ = nullptr;  // second cut, in pieces where flagged:
-  const std::vector<bool>* is_folded_ = nullptr;
-  std::size_t next_ = 0;
 };
 
 }  // namespace
