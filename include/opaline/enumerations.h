@@ -69,10 +69,11 @@ enum class Method {
   direct,            ///< importance sampling of the BSSRDF: the noisy reference of `hierarchical`
   volume,            ///< random walks inside the bodies: the reference without a model, noisy
   volume_diffusion,  ///< the diffusion equation inside the bodies: no kernel, no noise
-  automatic          ///< volume_diffusion or hierarchical, whichever suits a body
+  automatic,         ///< volume_diffusion or hierarchical, whichever suits a body
+  preintegrated      ///< diffusion in a ball of the local curvature: for moving objects, without a precompute
 };
-inline constexpr std::array<std::string_view, 6> kMethodNames{"hierarchical", "lambert",          "direct",
-                                                              "volume",       "volume_diffusion", "auto"};
+inline constexpr std::array<std::string_view, 7> kMethodNames{
+    "hierarchical", "lambert", "direct", "volume", "volume_diffusion", "auto", "preintegrated"};
 constexpr NameList names_of(Method) {
   return kMethodNames;
 }

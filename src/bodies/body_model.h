@@ -17,6 +17,7 @@ struct BodyModel {
   /// profiles named by the scene and for open meshes.
   std::optional<double> expected_error;
   std::optional<double> expected_error_of_diffusion;  ///< the same of Method::volume_diffusion
+  bool has_thin_parts = false;  ///< the latter is that of parts much thinner than the body in the mean
 };
 
 }  // namespace opaline

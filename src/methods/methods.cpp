@@ -7,6 +7,7 @@
 #include "methods/direct/direct_method.h"
 #include "methods/hierarchical/hierarchical_method.h"
 #include "methods/lambert/lambert_method.h"
+#include "methods/preintegrated/preintegrated_method.h"
 #include "methods/volume/volume_method.h"
 #include "methods/volume_diffusion/volume_diffusion_method.h"
 
@@ -19,9 +20,10 @@ const SubsurfaceMethod& method_of(Method method) {
   static const VolumeMethod volume;
   static const VolumeDiffusionMethod volume_diffusion;
   static const AutomaticMethod automatic;
+  static const PreintegratedMethod preintegrated;
   // In the order of the enumeration.
   static const auto kAll = std::to_array<const SubsurfaceMethod*>(
-      {&hierarchical, &lambert, &direct, &volume, &volume_diffusion, &automatic});
+      {&hierarchical, &lambert, &direct, &volume, &volume_diffusion, &automatic, &preintegrated});
   static_assert(std::tuple_size_v<decltype(kAll)> == kMethodNames.size());
   return *kAll[std::size_t(method)];
 }

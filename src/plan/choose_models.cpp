@@ -128,7 +128,10 @@ BodyModel choose_model(const Medium& medium, const BodyShape& shape) {
   }
   const double mean_free_paths = thickness / extremes.mean_free_path;
   model.expected_error = (is_flat ? kErrorOfPlates : kErrorOfBodies).at(mean_free_paths, extremes);
+  constexpr double kMuch = 1.5;
   model.expected_error_of_diffusion = error_of_diffusion(shape, thickness, extremes);
+  model.has_thin_parts =
+      *model.expected_error_of_diffusion > kMuch * kErrorOfDiffusion.at(mean_free_paths, extremes);
   const std::string size = fmt::format("{} mm{} ({})", two_digits(thickness),
                                        mean_free_paths_text(mean_free_paths), extremes.channels);
   if (is_flat && thickness < kCrossed * extremes.diffuse_mean_free_path) {
@@ -152,6 +155,8 @@ std::string model_error_text(const BodyModel& model, Method method, bool reenter
   const std::optional<double> own = expected_error(model, method);
   if (!own) return {};
   std::string text = "expected model error " + percent_text(*own);
+  if (method == Method::volume_diffusion && model.has_thin_parts)
+    text += ", most of it at thin parts; several times as much if they are lit from behind alone";
   if (!reenters) text += " (without re-entry)";
   if (method == Method::volume_diffusion || !model.expected_error_of_diffusion) return text;
   return text + "; --method volume_diffusion: " + percent_text(*model.expected_error_of_diffusion);

@@ -265,7 +265,8 @@ std::string too_dark(const Scene& scene, const World& world, double brightest) {
     text += ": " + black;
   else if (causes.empty() && lights_that_miss(scene, world).empty() && !has_black_medium(scene))
     text +=
-        ": no light reaches the visible surfaces; all lights may be behind them, inside a shape or in shadow";
+        ": no light reaches the visible surfaces; all lights may be behind them, inside a shape, "
+        "in shadow or too weak";
   for (const std::string& cause : causes) text += "; " + cause;
   return "the object is " + text;
 }

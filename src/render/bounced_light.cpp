@@ -17,9 +17,10 @@ constexpr std::uint64_t kSeed = 4000;
 // Gathered rays: from a hit without cached irradiance; from a cache point, per pixel of its spacing, at least
 // and at most. Closer cache points use the maximum.
 constexpr int kOfHit = 24, kOfPixel = 3, kFewestOfPlace = 48, kMostOfPlace = 192;
-constexpr std::size_t kPlacesAtOnce = 128;  // each of many rays, and the threads share them
-constexpr int kAcross = 64;                 // cache points along the image's longer side, first lattice
-constexpr int kAround = 2;                  // beyond each border
+constexpr std::size_t kPlacesAtOnce = 128;       // each of many rays, and the threads share them
+constexpr int kAcross = 64;                      // cache points along the image's longer side, first lattice
+constexpr std::uint64_t kKeysOfMore = 1u << 31;  // first key of a second gathering, by more rays
+constexpr int kAround = 2;                       // beyond each border
 constexpr std::size_t kLattices = 3;
 // Mean inverse distance of a cache point's hits, times the spacing, above which closer cache points are
 // added. A wall meeting a floor gives 0.21 at a distance of one spacing.
@@ -36,6 +37,16 @@ using Lanes = float __attribute__((vector_size(BouncedPlaces::kBeside * sizeof(f
 
 Lanes absolute(const Lanes& values) {
   return values < 0 ? -values : values;
+}
+
+/// The nearest value to `smooth` within two standard errors.
+RgbF within_noise(const RgbF& smooth, const RgbF& own, const RgbF& variance) {
+  RgbF value;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float error = 2 * std::sqrt(std::max(0.f, variance[c]));
+    value[c] = std::clamp(smooth[c], own[c] - error, own[c] + error);
+  }
+  return value;
 }
 
 HeldView::Gathering& gathering_of(std::vector<HeldView::Gathering>& by_field, std::size_t field,
@@ -67,6 +78,20 @@ BouncedPlaces::BouncedPlaces(const RenderInput& input, const Shader& shader)
 
 void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
                            std::span<const std::uint32_t> places) {
+  constexpr double kNoisy = .3;  // smoothing leaves about a twentieth
+  constexpr int kMore = 4;
+  const bool is_first = &lattice == &lattices_.front();
+  const int rays_each = is_first
+                            ? std::clamp(kOfPixel * lattice.step * lattice.step, kFewestOfPlace, kMostOfPlace)
+                            : kMostOfPlace;
+  gather(input, shader, lattice, places, rays_each, 0);
+  if (lattice.noise() > kNoisy) gather(input, shader, lattice, places, kMore * rays_each, kKeysOfMore);
+  lattice.smooth_further();
+  if (is_first) lattice.smooth_noise();  // the others have steep gradients
+}
+
+void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
+                           std::span<const std::uint32_t> places, int rays_each, std::uint64_t first_key) {
   const bool is_first = &lattice == &lattices_.front();
   const std::size_t lattice_index = is_first ? 0 : lattices_.size();
   std::vector<TracedRay> rays;
@@ -74,14 +99,11 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
   for (const std::uint32_t place : places) {
     const int row = int(place) / lattice.columns, column = int(place) % lattice.columns;
     rays.push_back({camera_.ray((column - kAround) * lattice.step, (row - kAround) * lattice.step, 0), {}});
-    keys.push_back(place * kLattices + lattice_index);
+    keys.push_back(first_key + place * kLattices + lattice_index);
   }
   input.rays.intersect(rays);
   // Spacing at depth 1.
   const double apart = lattice.step * pixel_width(input.scene.camera, input.scene.film);
-  const int rays_each = is_first
-                            ? std::clamp(kOfPixel * lattice.step * lattice.step, kFewestOfPlace, kMostOfPlace)
-                            : kMostOfPlace;
   HeldView* const view = input.view;
   const std::size_t first_chunk = chunks_;
   chunks_ += chunk_count(rays.size(), kPlacesAtOnce);
@@ -95,13 +117,15 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
       for (const std::uint32_t ray : hits.rays) held_places.push_back(std::uint32_t(keys[begin + ray]));
       HeldView::Gathering* const held =
           view != nullptr ? &gathering_of(view->at_places[first_chunk + chunk], field, held_places) : nullptr;
-      std::vector<RgbF> irradiance(hits.points.size()), further(hits.points.size());
+      std::vector<RgbF> irradiance(hits.points.size()), further(hits.points.size()),
+          squares(hits.points.size());
       std::vector<float> nearness(hits.points.size());  // mean inverse distance of the hits
       for_each_gathered({input.rays, shader, hits.points, hits.keys, eta, rays_each,
                          hash_bits(input.scene.settings.seed, kSeed), held, view},
                         [&](const SurfaceLight& light) {
                           irradiance[light.point] += light.irradiance;
                           further[light.point] += light.further;
+                          squares[light.point] += light.irradiance * light.irradiance;
                           nearness[light.point] += 1 / (float(rays_each) * light.distance);
                         });
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
@@ -110,12 +134,12 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
         lattice.places.set(place, hits.points[i], eta, spacing);
         lattice.irradiance[place] = irradiance[i];
         lattice.further[place] = further[i];
+        lattice.variance[place] = squares[i] - irradiance[i] * irradiance[i] * (1 / float(rays_each));
         is_near[k] = spacing * nearness[i] > kNear;
       }
     }
   });
   for (std::size_t k = 0; k < places.size(); ++k) lattice.is_near[places[k]] = is_near[k] != 0;
-  lattice.smooth_further();
 }
 
 // Cache points of the finer lattice around hits near a close pair of surfaces.
@@ -141,6 +165,7 @@ BouncedPlaces::Lattice::Lattice(const Film& film, int pixels)
       rows(film.resolution[1] / step + 1 + 2 * kAround),
       irradiance(std::size_t(columns) * std::size_t(rows)),
       further(irradiance.size()),
+      variance(irradiance.size()),
       is_near(irradiance.size()) {
   places.resize(irradiance.size());
 }
@@ -200,25 +225,53 @@ std::optional<RgbF> BouncedPlaces::Lattice::mean(std::span<const RgbF> values, d
   return sum * (1 / weights);
 }
 
-void BouncedPlaces::Lattice::smooth_further() {
-  constexpr int kTimes = 6;
-  if (std::ranges::all_of(further, [](const RgbF& value) { return value == RgbF{}; })) return;
-  for (std::size_t place = 0; place < further.size(); ++place) irradiance[place] -= further[place];
-  for (int time = 0; time < kTimes; ++time) {
-    std::vector<RgbF> smooth = further;
-    parallel_chunks(further.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+double BouncedPlaces::Lattice::noise() const {
+  Rgb error{}, size{};
+  for (std::size_t place = 0; place < irradiance.size(); ++place)
+    for (std::size_t c = 0; c < 3; ++c) {
+      error[c] += double(std::max(0.f, variance[place][c]));
+      size[c] += double(irradiance[place][c]) * double(irradiance[place][c]);
+    }
+  double noise = 0;
+  for (std::size_t c = 0; c < 3; ++c)
+    if (size[c] > 0) noise = std::max(noise, std::sqrt(error[c] / size[c]));
+  return noise;
+}
+
+template <class Combine>
+void BouncedPlaces::Lattice::smooth(std::vector<RgbF>& values, int times, const Combine& combine) const {
+  for (int time = 0; time < times; ++time) {
+    std::vector<RgbF> smooth = values;
+    parallel_chunks(values.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i) {
         if (!(places.eta[i] >= 0)) continue;
         const Vec3f point(places.x[i], places.y[i], places.z[i]),
             normal(places.normal_x[i], places.normal_y[i], places.normal_z[i]);
         const std::size_t row = i / std::size_t(columns), column = i % std::size_t(columns);
-        if (const std::optional<RgbF> known =
-                mean(further, double(column), double(row), point, normal, places.eta[i]))
-          smooth[i] = *known;
+        if (const std::optional<RgbF> around =
+                mean(values, double(column), double(row), point, normal, places.eta[i]))
+          smooth[i] = combine(i, *around);
       }
     });
-    further = std::move(smooth);
+    values = std::move(smooth);
   }
+}
+
+void BouncedPlaces::Lattice::smooth_noise() {
+  constexpr int kTimes = 6;
+  const auto replace = [](std::size_t, const RgbF& around) { return around; };
+  smooth(variance, 2, replace);  // it is unknown at places without a bright ray
+  const std::vector<RgbF> own = irradiance;
+  smooth(irradiance, kTimes, [&](std::size_t i, const RgbF& around) {
+    return is_near[i] ? own[i] : within_noise(around, own[i], variance[i]);
+  });
+}
+
+void BouncedPlaces::Lattice::smooth_further() {
+  constexpr int kTimes = 6;
+  if (std::ranges::all_of(further, [](const RgbF& value) { return value == RgbF{}; })) return;
+  for (std::size_t place = 0; place < further.size(); ++place) irradiance[place] -= further[place];
+  smooth(further, kTimes, [](std::size_t, const RgbF& around) { return around; });
   for (std::size_t place = 0; place < further.size(); ++place) irradiance[place] += further[place];
 }
 
@@ -291,8 +344,9 @@ std::shared_ptr<const BouncedPlaces> bounced_places(const RenderInput& input) {
 
 namespace {
 
-/// Means of values at the samples with those around them, several times.
-std::vector<RgbF> smoothed(const SurfaceSamples& surface, std::vector<RgbF> values) {
+/// Means of values at the samples with those around them, several times; combine(i, mean): the new value.
+template <class Combine>
+std::vector<RgbF> smoothed(const SurfaceSamples& surface, std::vector<RgbF> values, const Combine& combine) {
   constexpr int kTimes = 3;
   constexpr float kReach = 6;             // spacings
   constexpr float kLeastAgreement = .7f;  // cosine of the normals
@@ -300,7 +354,7 @@ std::vector<RgbF> smoothed(const SurfaceSamples& surface, std::vector<RgbF> valu
   const auto reach = float(kReach * surface.spacing());
   const NearestSample grid(samples, nullptr, kReach);
   for (int time = 0; time < kTimes; ++time) {
-    std::vector<RgbF> smooth(values.size());
+    std::vector<RgbF> smooth = values;
     parallel_chunks(values.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i) {
         RgbF sum;
@@ -313,7 +367,7 @@ std::vector<RgbF> smoothed(const SurfaceSamples& surface, std::vector<RgbF> valu
           sum += values[member.sample] * weight;
           weights += weight;
         });
-        smooth[i] = weights > 0 ? sum * (1 / weights) : values[i];
+        if (weights > 0) smooth[i] = combine(i, sum * (1 / weights));
       }
     });
     values = std::move(smooth);
@@ -340,29 +394,39 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
         view != nullptr ? &view->at_samples[bounced.size()] : nullptr;
     if (held != nullptr) held->resize(chunk_count(samples.size(), kGatheredAtOnce));
     std::vector<RgbF>& own = bounced.emplace_back(samples.size());
-    std::vector<RgbF> further(samples.size());
+    std::vector<RgbF> further(samples.size()), variance(samples.size());
     const std::uint64_t seed = hash_bits(input.scene.settings.seed, kSeed + 2 + bounced.size());
     const int rays_each = method_of(body.plan.method).gathered_rays();
-    parallel_chunks(samples.size(), kGatheredAtOnce,
-                    [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-                      std::vector<SurfacePoint> points;
-                      std::vector<std::uint64_t> keys;
-                      for (std::size_t i = begin; i < end; ++i) {
-                        const SurfaceSample& s = samples[i];
-                        points.push_back(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v));
-                        keys.push_back(i);
-                      }
-                      for_each_gathered({input.rays, shader, points, keys, float(body.profile.eta), rays_each,
-                                         seed, held != nullptr ? &(*held)[chunk] : nullptr, view},
-                                        [&](const SurfaceLight& light) {
-                                          own[begin + light.point] += light.irradiance;
-                                          further[begin + light.point] += light.further;
-                                        });
-                      advance(input.monitor, end - begin);
-                    });
-    if (std::ranges::all_of(further, [](const RgbF& value) { return value == RgbF{}; })) continue;
-    const std::vector<RgbF> smooth = smoothed(body.surface, further);
-    for (std::size_t i = 0; i < own.size(); ++i) own[i] += smooth[i] - further[i];
+    parallel_chunks(
+        samples.size(), kGatheredAtOnce, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+          std::vector<SurfacePoint> points;
+          std::vector<std::uint64_t> keys;
+          for (std::size_t i = begin; i < end; ++i) {
+            const SurfaceSample& s = samples[i];
+            points.push_back(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v));
+            keys.push_back(i);
+          }
+          for_each_gathered({input.rays, shader, points, keys, float(body.profile.eta), rays_each, seed,
+                             held != nullptr ? &(*held)[chunk] : nullptr, view},
+                            [&](const SurfaceLight& light) {
+                              own[begin + light.point] += light.irradiance;
+                              further[begin + light.point] += light.further;
+                              variance[begin + light.point] += light.irradiance * light.irradiance;
+                            });
+          advance(input.monitor, end - begin);
+        });
+    const auto is_dark = [](const RgbF& value) { return value == RgbF{}; };
+    const auto replace = [](std::size_t, const RgbF& around) { return around; };
+    if (std::ranges::all_of(own, is_dark)) continue;
+    for (std::size_t i = 0; i < own.size(); ++i) variance[i] -= own[i] * own[i] * (1 / float(rays_each));
+    if (!std::ranges::all_of(further, is_dark)) {
+      const std::vector<RgbF> smooth = smoothed(body.surface, further, replace);
+      for (std::size_t i = 0; i < own.size(); ++i) own[i] += smooth[i] - further[i];
+    }
+    variance = smoothed(body.surface, std::move(variance), replace);
+    own = smoothed(body.surface, own, [&, first = own](std::size_t i, const RgbF& around) {
+      return within_noise(around, first[i], variance[i]);
+    });
   }
   return bounced;
 }

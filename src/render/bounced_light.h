@@ -54,8 +54,9 @@ class BouncedPlaces {
     int columns, rows;
     Places places;
     std::vector<RgbF> irradiance;
-    std::vector<RgbF> further;  ///< its part by earlier bounces
-    std::vector<bool> is_near;  ///< true if the gathered surfaces are close, relative to the spacing
+    std::vector<RgbF> further;   ///< its part by earlier bounces
+    std::vector<RgbF> variance;  ///< squared standard error of the irradiance
+    std::vector<bool> is_near;   ///< true if the gathered surfaces are close, relative to the spacing
 
     Lattice(const Film& film, int pixels);
     std::array<double, 2> in_places(const CameraRays::FilmPlace& seen) const;
@@ -64,14 +65,23 @@ class BouncedPlaces {
     std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point, float eta) const;
     /// Smooths `further`: its paths are noisier, and it varies less.
     void smooth_further();
+    /// Smooths the irradiance within its noise: few rays meet a small bright place.
+    void smooth_noise();
+    /// Standard error of the irradiance over its root mean square, of the worst channel.
+    double noise() const;
 
    private:
+    /// Replaces values by combine(place, mean around it), several times.
+    template <class Combine>
+    void smooth(std::vector<RgbF>& values, int times, const Combine& combine) const;
     /// Mean of values at the places around a position, by their weights.
     std::optional<RgbF> mean(std::span<const RgbF> values, double x, double y, const Vec3f& point,
                              const Vec3f& normal, float eta) const;
   };
   void gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
               std::span<const std::uint32_t> places);
+  void gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
+              std::span<const std::uint32_t> places, int rays_each, std::uint64_t first_key);
   std::vector<std::uint32_t> places_beside_near(const Lattice& coarse, const Lattice& fine) const;
 
   CameraRays camera_;

@@ -77,7 +77,7 @@ class DirectlyLitBodies {
 // Bounced light depends on all bodies.
 void Session::State::update_bounces(std::span<BodyStages> bodies) {
   const PrecomputeInput& input = bodies.front().input;
-  KeyBuilder all("bounces", 8);
+  KeyBuilder all("bounces", 9);
   all.add(surfaces_key(input, mesh_keys_, bodies.front().lights));
   for (const Body& body : bodies_) all.add(method_of(body.plan.method).direct_key(body));
   std::vector<StageKey> wanted;

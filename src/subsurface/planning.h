@@ -14,8 +14,8 @@ namespace opaline {
 struct Lighting {
   double lights = 0;
   double extended_lights = 0;  ///< those that are neither points nor directions
-  double rays = 0;        ///< shadow rays from a point
-  double directions = 0;  ///< directions of incident light at a sample of volume_diffusion
+  double rays = 0;             ///< shadow rays from a point
+  double directions = 0;       ///< directions of incident light at a sample of volume_diffusion
 };
 Lighting lighting_of(const Scene& scene);
 

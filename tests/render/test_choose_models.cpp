@@ -169,6 +169,19 @@ TEST(ChooseModels, LocalThickness) {
   EXPECT_FALSE(std::isfinite(median_of(QuadShape{{}, {10, 0, 0}, {0, 10, 0}})));
 }
 
+// Claim: a body so thin that rays from its surface start beyond its other side is left to the hierarchical evaluation, and needs
+// no more memory than others. Source: 64 distances of ray origins. Fails if: its cells are taken (a black image; 532 GB foreseen
+// for a ball flattened to 1e-9).
+TEST(ChooseModels, TooThinForRays) {
+  for (const double thickness : {1e-9, 1e-5, 1e-3}) {
+    const Scene scene = single_shape(SlabShape{{}, 30, 30, thickness}, open_marble(), 500);
+    const Plan plan = make_plan(scene, make_world(scene));
+    EXPECT_EQ(plan.groups.at(0).method, Method::hierarchical) << thickness;
+    EXPECT_NE(plan.groups[0].reason_against_method.find("too thin"), std::string::npos) << thickness;
+    EXPECT_LT(plan.bytes, 500'000'000u) << thickness;
+  }
+}
+
 // Claim: thin parts of a thick body raise its expected error of volume_diffusion: a ball with two ears lit from behind.
 // Source: `render --method volume --until-error 4%` of such a body at 96 x 96, rms of red: 7.9 and 6.9 % with ears of .3
 // and .6 mm; skin1 12.9 % with .6. Tolerance: a factor of 1.6. Fails if: the mean thickness stands for all places (3.1

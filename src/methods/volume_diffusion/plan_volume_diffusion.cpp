@@ -29,6 +29,10 @@ std::string reason_against_cells(const Scene& scene, const World& world, const B
     return fmt::format("its mesh is open ({} boundary edges) and encloses no volume", open_edges);
   constexpr double kThinnest = 1e-9;  // mean free paths; conductances of thinner bodies overflow
   if (body.thickness < kThinnest * body.smallest_mean_free_path) return "light crosses it without scattering";
+  constexpr double kLeastOffsets = 64;  // distances of ray origins from the surface
+  const Bounds box = bounds(world, body.meshes);
+  if (body.thickness < kLeastOffsets * 0x1p-18 * length(box.high - box.low) * world.unit)
+    return "it is too thin for rays to find its other side";
   if (!varies(scene, body) && is_too_large_for_cells(scene.settings, body))
     return fmt::format(
         "it requires more than {:.2g} million cells of {:.3g} mean free paths, and its surface is flat on "

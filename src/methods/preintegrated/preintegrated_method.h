@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `preintegrated`: each hit as on a ball of the local curvature, for about the price of diffuse reflection.
+#pragma once
+
+#include "methods/preintegrated/preintegrated_field.h"
+#include "subsurface/method.h"
+
+namespace opaline {
+
+class PreintegratedMethod : public SubsurfaceMethod {
+ public:
+  bool needs_samples() const override { return false; }
+  bool uses_radial_profile() const override { return false; }
+  MethodLayers layers() const override { return {}; }
+  bool has_model() const override { return false; }
+  double samples_with_shadow_rays(const Plan&) const override { return 0; }
+  double seconds_of_pixel(const Scene&, const Lighting& lighting) const override {
+    return kSecondsOfShadowRay * lighting.rays;
+  }
+  std::string shading_stage(const Scene&) const override { return "preintegrated diffusion by curvature"; }
+  std::unique_ptr<Field> field_of_medium(const RenderInput& input, std::size_t medium) const override {
+    return std::make_unique<PreintegratedField>(input, medium);
+  }
+};
+
+}  // namespace opaline

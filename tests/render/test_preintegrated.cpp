@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The method that shades each hit as on a ball of the local curvature.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "diffusion/reduced_medium.h"
+#include "geometry/vertex_curvature.h"
+#include "methods/preintegrated/sphere_response.h"
+#include "support/scene_picture.h"
+#include "support/scenes.h"
+#include "transport/fresnel.h"
+#include "transport/half_space.h"
+
+namespace opaline::test {
+namespace {
+
+constexpr double kExactMismatch = 3.95474;  // of eta 1.5, by Fresnel's equations
+
+CalibratedMedium medium_of(double sigma_a, double sigma_s, double mismatch) {
+  CalibratedMedium medium({sigma_a, sigma_s, 0, 1.5});
+  medium.mismatch = mismatch;
+  return medium;
+}
+
+// Claim: the zonal response of a ball is the closed form of the diffusion equation. Source: computed independently by
+// modified spherical Bessel functions. Tolerance: 1e-9 without absorption, 1e-6 for a mismatch of six digits. Fails if: the derivative
+// at the boundary is left out, or the source lies at the surface.
+TEST(Preintegrated, ZonalResponseOfABall) {
+  const std::vector<double> white = zonal_response(medium_of(0, 1, 2), 8, 1, 5);
+  const std::array<double, 4> of_white{1, .75, .57421875, .351708984375},
+      of_marble{.9014396350, .7948715256, .6942834685, .5337625606};
+  const std::vector<double> marble = zonal_response(medium_of(.0041, 2.62, kExactMismatch), 8, 1 / 2.6241, 5);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t l = std::array<std::size_t, 4>{0, 1, 2, 4}[i];
+    EXPECT_NEAR(white[l], of_white[i], 1e-9) << l;
+    EXPECT_NEAR(marble[l], of_marble[i], 1e-6) << l;
+  }
+}
+
+// Claim: without absorption all even light comes back, from balls of any size; a large ball is flat; a ball of no size
+// scatters evenly; nothing is NaN in between. Source: energy; the half space. Tolerance: 1e-9, 1e-4. Fails if: bands of small balls are 0 / 0.
+TEST(Preintegrated, Limits) {
+  for (const double radius : {1e-9, 1e-3, .5, 8., 1e3, 1e9}) {
+    EXPECT_NEAR(zonal_response(medium_of(0, 1, 2), radius, 40)[0], 1, 1e-9) << radius;
+    const CalibratedMedium skin = medium_of(.17, .88, 3);
+    for (const double value : zonal_response(skin, radius, 200))
+      EXPECT_TRUE(value >= 0 && value <= 1) << radius << ' ' << value;
+  }
+  const CalibratedMedium marble = medium_of(.0041, 2.62, kExactMismatch);
+  const double decay = std::sqrt(.0041 / marble.diffusion), depth = 1 / 2.6241;
+  EXPECT_NEAR(zonal_response(marble, 1e7, depth, 1)[0],
+              marble.albedo * std::exp(-decay * depth) / (1 + 2 * kExactMismatch * marble.diffusion * decay),
+              1e-6);
+  EXPECT_LT(zonal_response(marble, 1e-6, 3)[1], 1e-3);
+}
+
+// Claim: a flat body returns the exact half space's share of each direction, and light turned away gives it none; on a ball it does. Source: HalfSpace. Tolerance: 2e-3, by interpolation over the table's cosines.
+TEST(Preintegrated, FlatIsTheHalfSpace) {
+  const CalibratedMedium marble({.0041, 2.62, 0, 1.5});
+  const SphereResponse response(marble);
+  const HalfSpace exact(1 - marble.albedo, 1.5);
+  for (const double cosine : {.2, .5, .8, 1.}) {
+    const double inside = std::sqrt(1 - (1 - cosine * cosine) / (1.5 * 1.5));
+    EXPECT_NEAR(response.at(float(cosine), 0),
+                cosine * fresnel_transmittance(cosine, 1.5) * exact.share(inside), 2e-3)
+        << cosine;
+  }
+  EXPECT_EQ(response.at(-.3f, 0), 0);
+  EXPECT_EQ(response.at(-.3f, -1), 0);
+  EXPECT_GT(response.at(-.3f, 1 / 8.f), .02f);
+  EXPECT_TRUE(std::isfinite(response.at(.3f, std::numeric_limits<float>::infinity())));
+}
+
+// Claim: the curvature of meshes is that of their surfaces. Source: by hand: 1/R; of a torus (1/r + cos v / (R + r cos v)) / 2.
+// Tolerance: 2 %, 3 %. Fails if: the sign or the half is lost.
+TEST(Preintegrated, CurvatureOfMeshes) {
+  const World ball = make_world(single_shape(SphereShape{{}, 5}, marble(), 100));
+  for (const float curvature : mean_curvature(ball.meshes[0], ball.meshes[0].normals))
+    ASSERT_NEAR(double(curvature) / ball.unit * 5, 1, .02);
+  const World ring = make_world(single_shape(TorusShape{{}, 6, 2}, marble(), 100));
+  const std::vector<float> curvatures = mean_curvature(ring.meshes[0], ring.meshes[0].normals);
+  const Vec3d centre = -ring.origin / ring.unit;
+  for (std::size_t i = 0; i < curvatures.size(); ++i) {
+    const Vec3d p = (ring.meshes[0].positions[i] - centre) * ring.unit;
+    const double height = std::abs(p.y) < 2.01 ? p.y : p.z;
+    const double from_axis = std::sqrt(dot(p, p) - height * height), along = (from_axis - 6) / 2;
+    ASSERT_NEAR(double(curvatures[i]) / ring.unit, (1 / 2. + along / from_axis) / 2, .015) << i;
+  }
+}
+
+// Claim: in even light, balls of any size that absorb nothing are white as diffuse reflection is; without lights they are black. Source: energy.
+// Tolerance: 1 %. Fails if: only the upper hemisphere lights a ball, or its own far side hides light.
+TEST(Preintegrated, Furnace) {
+  for (const double radius : {.3, 3., 300.}) {
+    Scene scene = single_shape(SphereShape{{}, radius}, grey_medium(1, 0, 1.3), 100);
+    scene.camera.position = {0, 0, 4 * radius};
+    scene.lights = {{"all around", Surroundings{Rgb(1)}}};
+    scene.settings.method = Method::preintegrated;
+    const auto mean_of_middle = [](const Image& image) {
+      const auto red = std::size_t(std::ranges::find(image.channels, "diffuse.R") - image.channels.begin());
+      double sum = 0;
+      for (std::size_t y = 13; y < 19; ++y)
+        for (std::size_t x = 13; x < 19; ++x)
+          sum += double(image.pixels[(y * 32 + x) * image.channels.size() + red]);
+      return sum / 36;
+    };
+    const double reflected = mean_of_middle(cold_picture(scene));
+    scene.settings.method = Method::lambert;
+    EXPECT_NEAR(reflected / mean_of_middle(cold_picture(scene)), 1, .01) << radius;
+    scene.settings.method = Method::preintegrated;
+    scene.lights.clear();
+    EXPECT_EQ(mean_of_middle(cold_picture(scene)), 0);
+  }
+}
+
+}  // namespace
+}  // namespace opaline::test
