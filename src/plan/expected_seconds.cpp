@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "plan/expected_seconds.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "scene/scene_properties.h"
 #include "subsurface/method.h"
 
@@ -18,9 +21,11 @@ double seconds_of_hit(const Lighting& lighting) {
 
 // At places of the image and at samples.
 double seconds_of_bounces(const Scene& scene, const Plan& plan, const Lighting& lighting) {
-  constexpr double kPlaces = 4000, kOfPlace = 100;  // rays that meet a surface
+  constexpr double kAcross = 64, kHits = .5;  // as BouncedPlaces; share of the rays with a hit
   if (bounces_of(scene) == 0) return 0;
-  double rays = kPlaces * kOfPlace;
+  const double width = double(scene.film.resolution[0]), height = double(scene.film.resolution[1]);
+  const double pixels = std::pow(std::max(1., std::max(width, height) / kAcross), 2);  // of a place
+  double rays = width * height / pixels * std::clamp(3 * pixels, 48., 192.) * kHits;
   for (const BodyPlan& group : plan.groups)
     rays += double(group.samples) * method_of(group.method).gathered_rays();
   return rays * seconds_of_hit(lighting);

@@ -99,6 +99,7 @@ TEST(Preintegrated, Furnace) {
     scene.camera.position = {0, 0, 4 * radius};
     scene.lights = {{"all around", Surroundings{Rgb(1)}}};
     scene.settings.method = Method::preintegrated;
+    scene.settings.light_samples = 1024;
     const auto mean_of_middle = [](const Image& image) {
       const auto red = std::size_t(std::ranges::find(image.channels, "diffuse.R") - image.channels.begin());
       double sum = 0;

@@ -130,7 +130,8 @@ void PreintegratedField::add_light(const PointIrradianceInput& lighting, const L
                                    std::span<const Place> smooth, LeavingLight& result) const {
   constexpr std::size_t kAtOnce = 4096;  // rays
   const bool is_all_around = !extent(light).center && !extent(light).towards;
-  const int samples = is_delta(light) ? 1 : lighting.light_samples, sides = is_all_around ? 2 : 1;
+  const int sides = is_all_around ? 2 : 1;  // each with its share of the rays
+  const int samples = is_delta(light) ? 1 : std::max(1, lighting.light_samples / sides);
   const RgbF emitted(emission(light));
   const std::uint64_t seed = light_seed(lighting.seed, light);
   std::vector<Ray> shadow;
