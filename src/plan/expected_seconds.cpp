@@ -24,7 +24,7 @@ double seconds_of_bounces(const Scene& scene, const Plan& plan, const Lighting& 
   constexpr double kAcross = 64, kHits = .5;  // as BouncedPlaces; share of the rays with a hit
   if (bounces_of(scene) == 0) return 0;
   const double width = double(scene.film.resolution[0]), height = double(scene.film.resolution[1]);
-  const double pixels = std::pow(std::max(1., std::max(width, height) / kAcross), 2);  // of a place
+  const double pixels = std::pow(std::max(1., std::max(width, height) / kAcross), 2);  // per place
   double rays = width * height / pixels * std::clamp(3 * pixels, 48., 192.) * kHits;
   for (const BodyPlan& group : plan.groups)
     rays += double(group.samples) * method_of(group.method).gathered_rays();

@@ -39,6 +39,23 @@ Lanes absolute(const Lanes& values) {
   return values < 0 ? -values : values;
 }
 
+// Few rays meet a small bright surface, as above a lamp: more rays, and smoothing, above this noise.
+constexpr double kNoisy = .3, kNoisyAtSamples = 1;
+
+/// Standard error of values over their root mean square, of the worst channel.
+double noise_of(std::span<const RgbF> values, std::span<const RgbF> variance) {
+  double noise = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      error += double(std::max(0.f, variance[i][c]));
+      size += double(values[i][c]) * double(values[i][c]);
+    }
+    if (size > 0) noise = std::max(noise, std::sqrt(error / size));
+  }
+  return noise;
+}
+
 /// The nearest value to `smooth` within two standard errors.
 RgbF within_noise(const RgbF& smooth, const RgbF& own, const RgbF& variance) {
   RgbF value;
@@ -78,16 +95,16 @@ BouncedPlaces::BouncedPlaces(const RenderInput& input, const Shader& shader)
 
 void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
                            std::span<const std::uint32_t> places) {
-  constexpr double kNoisy = .3;  // smoothing leaves about a twentieth
   constexpr int kMore = 4;
   const bool is_first = &lattice == &lattices_.front();
   const int rays_each = is_first
                             ? std::clamp(kOfPixel * lattice.step * lattice.step, kFewestOfPlace, kMostOfPlace)
                             : kMostOfPlace;
   gather(input, shader, lattice, places, rays_each, 0);
-  if (lattice.noise() > kNoisy) gather(input, shader, lattice, places, kMore * rays_each, kKeysOfMore);
+  const bool is_noisy = noise_of(lattice.irradiance, lattice.variance) > kNoisy;
+  if (is_noisy) gather(input, shader, lattice, places, kMore * rays_each, kKeysOfMore);
   lattice.smooth_further();
-  if (is_first) lattice.smooth_noise();  // the others have steep gradients
+  if (is_noisy && is_first) lattice.smooth_noise();  // the others have steep gradients
 }
 
 void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
@@ -223,19 +240,6 @@ std::optional<RgbF> BouncedPlaces::Lattice::mean(std::span<const RgbF> values, d
   }
   if (!(weights > kLeastWeight)) return {};
   return sum * (1 / weights);
-}
-
-double BouncedPlaces::Lattice::noise() const {
-  Rgb error{}, size{};
-  for (std::size_t place = 0; place < irradiance.size(); ++place)
-    for (std::size_t c = 0; c < 3; ++c) {
-      error[c] += double(std::max(0.f, variance[place][c]));
-      size[c] += double(irradiance[place][c]) * double(irradiance[place][c]);
-    }
-  double noise = 0;
-  for (std::size_t c = 0; c < 3; ++c)
-    if (size[c] > 0) noise = std::max(noise, std::sqrt(error[c] / size[c]));
-  return noise;
 }
 
 template <class Combine>
@@ -423,6 +427,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
       const std::vector<RgbF> smooth = smoothed(body.surface, further, replace);
       for (std::size_t i = 0; i < own.size(); ++i) own[i] += smooth[i] - further[i];
     }
+    if (!(noise_of(own, variance) > kNoisyAtSamples)) continue;
     variance = smoothed(body.surface, std::move(variance), replace);
     own = smoothed(body.surface, own, [&, first = own](std::size_t i, const RgbF& around) {
       return within_noise(around, first[i], variance[i]);

@@ -67,8 +67,6 @@ class BouncedPlaces {
     void smooth_further();
     /// Smooths the irradiance within its noise: few rays meet a small bright place.
     void smooth_noise();
-    /// Standard error of the irradiance over its root mean square, of the worst channel.
-    double noise() const;
 
    private:
     /// Replaces values by combine(place, mean around it), several times.

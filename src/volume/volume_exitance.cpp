@@ -166,7 +166,7 @@ class Evaluation {
  private:
   double outer_area(std::size_t i) const {
     const double area = double(input_.samples[i].area);
-    return outer_.empty() ? area : is_mostly_inside(outer_[i]) ? 0 : area * double(outer_[i]);
+    return outer_.empty() ? area : area * double(outer_[i]);
   }
 
   const VolumeInput& input_;

@@ -58,9 +58,10 @@ struct VolumeSums {
 };
 
 struct VolumeExitance {
-  std::vector<RgbF> exitance;  ///< one per sample: radiant exitance, W/mm^2, the mean over its cell
-  std::vector<RgbF> error;     ///< one per sample: standard error of the exitance
-  std::size_t walks = 0;       ///< per sample, in the channel and light with the most
+  std::vector<RgbF>
+      exitance;             ///< one per sample: radiant exitance, W/mm^2, the mean over its cell's outer part
+  std::vector<RgbF> error;  ///< one per sample: standard error of the exitance
+  std::size_t walks = 0;    ///< per sample, in the channel and light with the most
   double relative_error =
       0;                  ///< rms over the surface of error over sqrt(exitance^2 + (1 % of the largest)^2)
   Rgb lost{}, stopped{};  ///< fractions of the transmitted light: see WalkSums

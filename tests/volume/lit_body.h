@@ -60,8 +60,10 @@ struct LitBody {
       const SurfaceSample& s = surface.samples[i];
       if (!counts(s)) continue;
       area += double(s.area);
-      sum += double(s.area) * double(exitance.exitance[i].x);
-      square += std::pow(double(s.area) * double(exitance.error[i].x), 2);
+      const double outer =
+          double(s.area) * (exitance.outer_shares.empty() ? 1 : double(exitance.outer_shares[i]));
+      sum += outer * double(exitance.exitance[i].x);
+      square += std::pow(outer * double(exitance.error[i].x), 2);
     }
     return {sum / area, std::sqrt(square) / area};
   }
