@@ -40,15 +40,16 @@ Lanes absolute(const Lanes& values) {
 }
 
 // Few rays meet a small bright surface, as above a lamp: more rays, and smoothing, above this noise.
-constexpr double kNoisy = .3, kNoisyAtSamples = 1;
+constexpr double kNoisy = .3, kNoisyAtSamples = .6;
 
-/// Standard error of values over their root mean square, of the worst channel.
-double noise_of(std::span<const RgbF> values, std::span<const RgbF> variance) {
+/// Standard error of gathered light over its root mean square, of the worst channel, times the share of rays with a
+/// hit: with few hits, other light matters more.
+double noise_of(std::span<const RgbF> values, std::span<const RgbF> variance, std::span<const float> met) {
   double noise = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     double error = 0, size = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      error += double(std::max(0.f, variance[i][c]));
+      error += double(std::max(0.f, variance[i][c])) * double(met[i]) * double(met[i]);
       size += double(values[i][c]) * double(values[i][c]);
     }
     if (size > 0) noise = std::max(noise, std::sqrt(error / size));
@@ -101,7 +102,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
                             ? std::clamp(kOfPixel * lattice.step * lattice.step, kFewestOfPlace, kMostOfPlace)
                             : kMostOfPlace;
   gather(input, shader, lattice, places, rays_each, 0);
-  const bool is_noisy = noise_of(lattice.irradiance, lattice.variance) > kNoisy;
+  const bool is_noisy = noise_of(lattice.irradiance, lattice.variance, lattice.met) > kNoisy;
   if (is_noisy) gather(input, shader, lattice, places, kMore * rays_each, kKeysOfMore);
   lattice.smooth_further();
   if (is_noisy && is_first) lattice.smooth_noise();  // the others have steep gradients
@@ -136,6 +137,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
           view != nullptr ? &gathering_of(view->at_places[first_chunk + chunk], field, held_places) : nullptr;
       std::vector<RgbF> irradiance(hits.points.size()), further(hits.points.size()),
           squares(hits.points.size());
+      std::vector<float> met(hits.points.size());
       std::vector<float> nearness(hits.points.size());  // mean inverse distance of the hits
       for_each_gathered({input.rays, shader, hits.points, hits.keys, eta, rays_each,
                          hash_bits(input.scene.settings.seed, kSeed), held, view},
@@ -143,6 +145,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
                           irradiance[light.point] += light.irradiance;
                           further[light.point] += light.further;
                           squares[light.point] += light.irradiance * light.irradiance;
+                          met[light.point] += 1 / float(rays_each);
                           nearness[light.point] += 1 / (float(rays_each) * light.distance);
                         });
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
@@ -151,6 +154,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
         lattice.places.set(place, hits.points[i], eta, spacing);
         lattice.irradiance[place] = irradiance[i];
         lattice.further[place] = further[i];
+        lattice.met[place] = met[i];
         lattice.variance[place] = squares[i] - irradiance[i] * irradiance[i] * (1 / float(rays_each));
         is_near[k] = spacing * nearness[i] > kNear;
       }
@@ -183,6 +187,7 @@ BouncedPlaces::Lattice::Lattice(const Film& film, int pixels)
       irradiance(std::size_t(columns) * std::size_t(rows)),
       further(irradiance.size()),
       variance(irradiance.size()),
+      met(irradiance.size()),
       is_near(irradiance.size()) {
   places.resize(irradiance.size());
 }
@@ -399,6 +404,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
     if (held != nullptr) held->resize(chunk_count(samples.size(), kGatheredAtOnce));
     std::vector<RgbF>& own = bounced.emplace_back(samples.size());
     std::vector<RgbF> further(samples.size()), variance(samples.size());
+    std::vector<float> met(samples.size());
     const std::uint64_t seed = hash_bits(input.scene.settings.seed, kSeed + 2 + bounced.size());
     const int rays_each = method_of(body.plan.method).gathered_rays();
     parallel_chunks(
@@ -416,6 +422,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
                               own[begin + light.point] += light.irradiance;
                               further[begin + light.point] += light.further;
                               variance[begin + light.point] += light.irradiance * light.irradiance;
+                              met[begin + light.point] += 1 / float(rays_each);
                             });
           advance(input.monitor, end - begin);
         });
@@ -427,7 +434,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
       const std::vector<RgbF> smooth = smoothed(body.surface, further, replace);
       for (std::size_t i = 0; i < own.size(); ++i) own[i] += smooth[i] - further[i];
     }
-    if (!(noise_of(own, variance) > kNoisyAtSamples)) continue;
+    if (!(noise_of(own, variance, met) > kNoisyAtSamples)) continue;
     variance = smoothed(body.surface, std::move(variance), replace);
     own = smoothed(body.surface, own, [&, first = own](std::size_t i, const RgbF& around) {
       return within_noise(around, first[i], variance[i]);
