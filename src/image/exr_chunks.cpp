@@ -138,6 +138,15 @@ class ChunkCheck {
 
 }  // namespace
 
+std::string without_name(std::string complaint, const std::string& path) {
+  for (const char* const sentence : {"Cannot read image file", "Error reading pixel data from image file"}) {
+    const std::string named = std::string(sentence) + " \"" + path + "\". ";
+    for (std::size_t at; (at = complaint.find(named)) != std::string::npos;)
+      complaint.erase(at, named.size());
+  }
+  return complaint;
+}
+
 void check_exr_chunks(const std::string& path) try {
   imf::MultiPartInputFile file(path.c_str(), 0, false);
   const imf::Header& header = file.header(0);
@@ -146,11 +155,7 @@ void check_exr_chunks(const std::string& path) try {
 } catch (const Error&) {
   throw;
 } catch (const std::exception& failure) {
-  // OpenEXR repeats the file's name on each level.
-  const std::string repeated = "Error reading pixel data from image file \"" + path + "\". ";
-  std::string complaint = failure.what();
-  while (complaint.starts_with(repeated)) complaint.erase(0, repeated.size());
-  throw bad_file(path, "the image is damaged: " + complaint);
+  throw bad_file(path, "the image is damaged: " + without_name(failure.what(), path));
 }
 
 }  // namespace opaline

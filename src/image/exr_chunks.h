@@ -14,4 +14,7 @@ namespace opaline {
 /// from  the OpenEXR file layout (openexr.com/en/latest/OpenEXRFileLayout.html)
 void check_exr_chunks(const std::string& path);
 
+/// A complaint of OpenEXR without its sentences naming the file.
+std::string without_name(std::string complaint, const std::string& path);
+
 }  // namespace opaline

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "image/color_channels.h"
+#include "image/exr_chunks.h"
 #include "image/png_chunks.h"
 #include "image/tiff_strips.h"
 #include "opaline/error.h"
@@ -114,7 +115,8 @@ OpenPicture open_picture(const PictureSource& source, std::span<const std::strin
                      std::string(picture.format));
   }
   if (!picture.input || !picture.input->open(source.path, spec, config))
-    throw bad_file(source.path, "not a readable image: " + complaint_of(picture.input.get()));
+    throw bad_file(source.path,
+                   "not a readable image: " + without_name(complaint_of(picture.input.get()), source.path));
   if (spec.deep) throw bad_file(source.path, "deep images are not supported");
   check_size(source.path, spec, picture.format, bytes.size());
   if (picture.format == "exr") check_color_types(source.path, spec);

@@ -42,8 +42,8 @@ Lanes absolute(const Lanes& values) {
 // Few rays meet a small bright surface, as above a lamp: more rays, and smoothing, above this noise.
 constexpr double kNoisy = .3, kNoisyAtSamples = .6;
 
-/// Standard error of gathered light over its root mean square, of the worst channel, times the share of rays with a
-/// hit: with few hits, other light matters more.
+/// Standard error of gathered light over its root mean square, of the worst channel, times the share of rays with
+/// light: with few, other light matters more.
 double noise_of(std::span<const RgbF> values, std::span<const RgbF> variance, std::span<const float> met) {
   double noise = 0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -145,7 +145,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
                           irradiance[light.point] += light.irradiance;
                           further[light.point] += light.further;
                           squares[light.point] += light.irradiance * light.irradiance;
-                          met[light.point] += 1 / float(rays_each);
+                          if (max_component(light.irradiance) > 0) met[light.point] += 1 / float(rays_each);
                           nearness[light.point] += 1 / (float(rays_each) * light.distance);
                         });
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
@@ -422,7 +422,8 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
                               own[begin + light.point] += light.irradiance;
                               further[begin + light.point] += light.further;
                               variance[begin + light.point] += light.irradiance * light.irradiance;
-                              met[begin + light.point] += 1 / float(rays_each);
+                              if (max_component(light.irradiance) > 0)
+                                met[begin + light.point] += 1 / float(rays_each);
                             });
           advance(input.monitor, end - begin);
         });

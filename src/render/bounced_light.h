@@ -56,7 +56,7 @@ class BouncedPlaces {
     std::vector<RgbF> irradiance;
     std::vector<RgbF> further;   ///< its part by earlier bounces
     std::vector<RgbF> variance;  ///< squared standard error of the irradiance
-    std::vector<float> met;      ///< share of rays with a hit
+    std::vector<float> met;      ///< share of rays with light
     std::vector<bool> is_near;   ///< true if the gathered surfaces are close, relative to the spacing
 
     Lattice(const Film& film, int pixels);

@@ -42,8 +42,7 @@ void for_each_legendre(double cosine, std::size_t count, const Use& use) {
   double before = 0, value = 1;
   for (std::size_t l = 0; l < count; ++l) {
     use(l, value);
-    const double n = double(l);
-    const double next = ((2 * n + 1) * cosine * value - n * before) / (n + 1);
+    const double next = boost::math::legendre_next(unsigned(l), cosine, value, before);
     before = value;
     value = next;
   }
