@@ -203,8 +203,8 @@ std::span<const Member<Settings>> settings_members() {
           "diffuse reflection, usually fastest; `\"direct\"`: the same BSSRDF by unbiased Monte Carlo "
           "sampling, slow and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the "
           "reference; `\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the "
-          "reference; `\"preintegrated\"`: each hit as on a ball of the local curvature, nearly as fast as "
-          "`\"lambert\"`, for objects in motion"),
+          "reference; `\"preintegrated\"`: each hit as on a ball of the local curvature, at about twice the "
+          "cost of `\"lambert\"`, for objects in motion"),
       member<&Settings::evaluator>(
           "evaluator", choice, "", kFiniteNumber, "", {exitance, surfaces},
           "hierarchical evaluation: `\"dual_tree\"`: clusters of shading points against octree nodes, to "

@@ -89,8 +89,8 @@ class BouncedPlaces {
 };
 
 /// Irradiance at each body's samples from surfaces: translucent ones from their trees or cells, opaque ones
-/// after all bounces between them; one list per body. view: cache with HeldView::at_samples for the same samples, extended; or
-/// null
+/// after all bounces between them; one list per body.
+/// in    view: cache with HeldView::at_samples for the same samples, extended; or null
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
                                                   HeldView* view = nullptr);
 

@@ -369,8 +369,8 @@ TEST(BouncedLight, LeavesNoBlotchesBesideABrightBody) {
   EXPECT_LT(std::sqrt(square) / mean, .3);
 }
 
-// Claim: a marble ball in a white room has no blotches on its dark side: neighbouring samples are alike. Source: it is lit by
-// all of the room there. Tolerance: 3 % rms; measured 1.8. Fails if: light of further bounces is not smoothed (7.1).
+// Claim: a marble ball in a white room has no blotches on its dark side: neighbouring samples are alike. Source: the whole
+// room lights it. Tolerance: 3 % rms; measured 1.8. Fails if: light of further bounces is not smoothed (7.1).
 TEST(BouncedLight, LeavesNoBlotchesInAWhiteRoom) {
   Scene scene = bouncing_scene();
   scene.media = {marble()};

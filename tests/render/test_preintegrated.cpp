@@ -55,6 +55,8 @@ TEST(Preintegrated, Limits) {
               marble.albedo * std::exp(-decay * depth) / (1 + 2 * kExactMismatch * marble.diffusion * decay),
               1e-6);
   EXPECT_LT(zonal_response(marble, 1e-6, 3)[1], 1e-3);
+  for (const CalibratedMedium& medium : {marble, medium_of(0, 1, 2), medium_of(5, .1, 1)})
+    EXPECT_NEAR(kept_contrast(medium, half_contrast(medium)), .5, 1e-12);
 }
 
 // Claim: a flat body returns the exact half space's share of each direction, and light turned away gives it none; on a ball it does. Source: HalfSpace. Tolerance: 2e-3, by interpolation over the table's cosines.

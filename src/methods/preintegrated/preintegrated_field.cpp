@@ -10,7 +10,9 @@
 #include "core/random.h"
 #include "geometry/vertex_curvature.h"
 #include "irradiance/sample_key.h"
+#include "irradiance/shadow_batch.h"
 #include "lights/light.h"
+#include "lights/shared_rays.h"
 #include "transport/fresnel.h"
 #include "transport/half_space.h"
 
@@ -20,9 +22,9 @@ namespace {
 /// Unoccluded light of one shadow ray.
 struct Arriving {
   std::uint32_t hit;
-  float cosine;      // to the normal
-  float irradiance;  // across the direction, per unit emission
-  RgbF returned;     // exitance over it
+  float cosine;     // to the normal
+  RgbF irradiance;  // across the direction
+  RgbF returned;    // exitance over it
 };
 
 /// All directions of a hemisphere alike: those along the surface count, too.
@@ -40,16 +42,6 @@ template <class Value>
 Value at_hit(const Mesh& mesh, std::span<const Value> at_vertices, const Hit& hit) {
   const auto& [a, b, c] = mesh.triangles[hit.triangle];
   return at_vertices[a] * (1 - hit.u - hit.v) + at_vertices[b] * hit.u + at_vertices[c] * hit.v;
-}
-
-// Wave number with half of the contrast; infinite without a mean free path.
-double half_kept(const CalibratedMedium& medium) {
-  double low = 0, high = 1e6 * medium.extinction;
-  for (int step = 0; step < 64; ++step) {
-    const double middle = low > 0 ? std::sqrt(low * high) : 1e-6 * high;
-    (kept_contrast(medium, middle) > .5 ? low : high) = middle;
-  }
-  return high;
 }
 
 }  // namespace
@@ -75,7 +67,7 @@ PreintegratedField::PreintegratedField(const RenderInput& input, std::size_t med
     const CalibratedMedium calibrated(reduced);
     channels_.emplace_back(calibrated);
     if (!(reduced.sigma_s > 0)) continue;
-    const double half = half_kept(calibrated);
+    const double half = half_contrast(calibrated);
     inverse_width += half / kHalfOfGaussian / 3;
     kept_[c] = float(kept_contrast(calibrated, 2 * half));
     total_[c] = float(HalfSpace(1 - reduced.albedo(), reduced.eta).diffuse_share());
@@ -126,13 +118,13 @@ float PreintegratedField::curvature_through(float cosine, float curvature, float
 }
 
 // Shadow rays from all hits; on the far side of a body, from the entry point of the light.
-void PreintegratedField::add_light(const PointIrradianceInput& lighting, const Light& light,
-                                   std::span<const Place> smooth, LeavingLight& result) const {
+void PreintegratedField::add_lights(const PointIrradianceInput& lighting, std::span<const Light> lights,
+                                    std::span<const Place> smooth, LeavingLight& result) const {
   constexpr std::size_t kAtOnce = 4096;  // rays
+  const Light& light = lights[0];
   const bool is_all_around = !extent(light).center && !extent(light).towards;
   const int sides = is_all_around ? 2 : 1;  // each with its share of the rays
   const int samples = is_delta(light) ? 1 : std::max(1, lighting.light_samples / sides);
-  const RgbF emitted(emission(light));
   const std::uint64_t seed = light_seed(lighting.seed, light);
   std::vector<Ray> shadow;
   std::vector<Arriving> arriving;
@@ -141,11 +133,10 @@ void PreintegratedField::add_light(const PointIrradianceInput& lighting, const L
     for (std::size_t r = 0; r < shadow.size(); ++r) {
       if (shadow[r].far < 0) continue;
       const auto& [hit, cosine, irradiance, returned] = arriving[r];
-      result.exitance[hit] += emitted * returned * irradiance;
+      result.exitance[hit] += returned * irradiance;
       if (cosine > 0)
         result.irradiance[hit] +=
-            emitted *
-            (irradiance * cosine * (eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.f), eta_) : 1));
+            irradiance * (cosine * (eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.f), eta_) : 1));
     }
     shadow.clear();
     arriving.clear();
@@ -160,11 +151,16 @@ void PreintegratedField::add_light(const PointIrradianceInput& lighting, const L
       const Vec3f about = s % sides == 0 ? normal : -normal;
       const std::array<double, 2> square =
           r2_point(part * std::uint64_t(samples) + std::uint64_t(s / sides), shift);
-      const LightSample sample = std::holds_alternative<Surroundings>(light.source)
-                                     ? sample_hemisphere(about, square, samples)
-                                     : sample_light(light, point.position, about, square, samples);
+      std::array<float, 3> weights{};
+      LightSample sample;
+      if (std::holds_alternative<Surroundings>(light.source)) {
+        sample = sample_hemisphere(about, square, samples);
+        weights[0] = sample.weight;
+      } else {
+        sample = sample_lights(lights, point.position, about, square, samples, weights);
+      }
       const float cosine = dot(normal, sample.direction);
-      if (!(sample.weight > 0) || (sides == 2 && !(dot(about, sample.direction) > 0))) continue;
+      if (!(std::ranges::max(weights) > 0) || (sides == 2 && !(dot(about, sample.direction) > 0))) continue;
       Place place = smooth[i];
       float across = 0;
       if (dot(point.geometric, sample.direction) < 0) {
@@ -177,7 +173,9 @@ void PreintegratedField::add_light(const PointIrradianceInput& lighting, const L
       const Vec3f from = point.position + point.geometric * (across > 0 ? 0 : point.offset);
       shadow.emplace_back(from + sample.direction * near, sample.direction,
                           (sample.distance - near) * .9999f);
-      arriving.push_back({std::uint32_t(i), dot(point.normal, sample.direction), sample.weight, returned});
+      RgbF irradiance;
+      for (std::size_t l = 0; l < lights.size(); ++l) irradiance += RgbF(emission(lights[l])) * weights[l];
+      arriving.push_back({std::uint32_t(i), dot(point.normal, sample.direction), irradiance, returned});
     }
     if (shadow.size() >= kAtOnce) trace();
   }
@@ -197,7 +195,10 @@ LeavingLight PreintegratedField::at(const SurfaceHits& hits, PointIrradianceInpu
   LeavingLight light;
   light.exitance.resize(count);
   light.irradiance.resize(count);
-  for (const Light& one : lighting.lights) add_light(lighting, one, smooth, light);
+  for (std::size_t l = 0, together = 0; l < lighting.lights.size(); l += together) {
+    together = sharing_rays(lighting.lights.subspan(l));
+    add_lights(lighting, lighting.lights.subspan(l, together), smooth, light);
+  }
   for (std::size_t i = 0; i < lighting.bounced.size(); ++i) {
     light.exitance[i] += total_ * lighting.bounced[i];
     light.irradiance[i] += lighting.bounced[i];

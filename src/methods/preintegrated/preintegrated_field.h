@@ -35,8 +35,9 @@ class PreintegratedField : public Field {
   Place smooth_at(const SurfacePoint& point, const Hit& hit) const;
   float thickness_along(const SurfacePoint& point, const Vec3f& towards) const;
   float curvature_through(float cosine, float curvature, float thickness) const;
-  void add_light(const PointIrradianceInput& lighting, const Light& light, std::span<const Place> smooth,
-                 LeavingLight& result) const;
+  /// in    lights: sharing their rays
+  void add_lights(const PointIrradianceInput& lighting, std::span<const Light> lights,
+                  std::span<const Place> smooth, LeavingLight& result) const;
   /// Response of the smooth surface, plus the remaining detail.
   RgbF response(const Place& place, const Vec3f& normal, const Vec3f& towards) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `preintegrated`: each hit as on a ball of the local curvature, for about the price of diffuse reflection.
+// `preintegrated`: each hit as on a ball of the local curvature, without a precompute.
 #pragma once
 
 #include "methods/preintegrated/preintegrated_field.h"

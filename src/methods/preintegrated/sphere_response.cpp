@@ -56,11 +56,14 @@ double transmitted(const CalibratedMedium& medium, double cosine) {
          (1 + decay * inside);
 }
 
+// Light entering a flat body over that leaving it, where it decays inwards at a rate, 1/length.
+double loss(const CalibratedMedium& medium, double rate) {
+  return (1 + rate / medium.extinction) * (1 + 2 * medium.mismatch * medium.diffusion * rate);
+}
+
 double flat_response(const CalibratedMedium& medium, double cosine) {
   if (!(cosine > 0)) return 0;
-  const double decay = decay_of(medium);
-  return transmitted(medium, cosine) * medium.albedo /
-         ((1 + decay / medium.extinction) * (1 + 2 * medium.mismatch * medium.diffusion * decay));
+  return transmitted(medium, cosine) * medium.albedo / loss(medium, decay_of(medium));
 }
 
 }  // namespace
@@ -99,11 +102,17 @@ std::vector<double> zonal_response(const CalibratedMedium& medium, double radius
 }
 
 double kept_contrast(const CalibratedMedium& medium, double wave_number) {
-  const auto returned = [&](double decay) {
-    return 1 / ((1 + decay / medium.extinction) * (1 + 2 * medium.mismatch * medium.diffusion * decay));
-  };
   const double decay = decay_of(medium);
-  return returned(std::hypot(decay, wave_number)) / returned(decay);
+  return loss(medium, decay) / loss(medium, std::hypot(decay, wave_number));
+}
+
+// By the positive root of loss(x) = 2 loss(decay), a quadratic.
+double half_contrast(const CalibratedMedium& medium) {
+  const double path = 1 / medium.extinction, leak = 2 * medium.mismatch * medium.diffusion;
+  const double decay = decay_of(medium), sum = path + leak, square = path * leak;
+  const double root = 2 * (2 * loss(medium, decay) - 1) /
+                      (sum + std::sqrt(sum * sum + 4 * square * (2 * loss(medium, decay) - 1)));
+  return std::sqrt(root * root - decay * decay);
 }
 
 std::vector<double> transmitted_zonal(const CalibratedMedium& medium, std::size_t count) {

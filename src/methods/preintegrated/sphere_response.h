@@ -26,6 +26,9 @@ std::vector<double> transmitted_zonal(const CalibratedMedium& medium, std::size_
 /// Contrast of exitance over that of irradiance, on a flat body, at a wave number, 1/length.
 double kept_contrast(const CalibratedMedium& medium, double wave_number);
 
+/// Wave number with half of the contrast, 1/length.
+double half_contrast(const CalibratedMedium& medium);
+
 /// Exitance of a ball over the irradiance across a parallel beam, for one channel. Flat: the exact half space.
 class SphereResponse {
  public:
