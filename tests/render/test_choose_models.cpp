@@ -184,8 +184,8 @@ TEST(ChooseModels, TooThinForRays) {
 
 // Claim: thin parts of a thick body raise its expected error of volume_diffusion: a ball with two ears lit from behind.
 // Source: `render --method volume --until-error 4%` of such a body at 96 x 96, rms of red: 7.9 and 6.9 % with ears of .3
-// and .6 mm; skin1 12.9 % with .6. Tolerance: a factor of 1.6. Fails if: the mean thickness stands for all places (3.1
-// and 2.9 %).
+// and .6 mm; skin1 12.9 % with .6. Tolerance: a factor of 1.6. Fails if: the mean thickness stands for all places (2.9 %
+// of marble).
 TEST(ChooseModels, EarsAreExpectedToBeLessExact) {
   const auto expected = [](double thickness, const std::string& medium) {
     Scene scene = single_shape(SphereShape{{}, 3}, preset(medium), 500);

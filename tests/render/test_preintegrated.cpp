@@ -77,7 +77,7 @@ TEST(Preintegrated, FlatIsTheHalfSpace) {
 }
 
 // Claim: the curvature of meshes is that of their surfaces. Source: by hand: 1/R; of a torus (1/r + cos v / (R + r cos v)) / 2.
-// Tolerance: 2 %, 3 %. Fails if: the sign or the half is lost.
+// Tolerance: 2 %; .015 / mm. Fails if: the sign or the half is lost.
 TEST(Preintegrated, CurvatureOfMeshes) {
   const World ball = make_world(single_shape(SphereShape{{}, 5}, marble(), 100));
   for (const float curvature : mean_curvature(ball.meshes[0], ball.meshes[0].normals))
