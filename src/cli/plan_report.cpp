@@ -13,6 +13,7 @@
 #include "plan/across_air.h"
 #include "plan/choose_models.h"
 #include "plan/expected_seconds.h"
+#include "plan/make_plan.h"
 #include "scene/names.h"
 #include "subsurface/method.h"
 #include "values/nearest_name.h"
@@ -110,6 +111,21 @@ std::string marble_text(const Scene& scene, const World& world) {
       shape.reflectance_texture ? ", without its texture" : "");
 }
 
+/// Fewer samples for large bodies, if they save much of the time.
+std::string fewer_samples_text(const Scene& scene, const World& world, const Plan& plan, double seconds) {
+  constexpr std::size_t kFew = 100'000;
+  constexpr double kWorthwhile = 0.6;  // fraction of the time
+  if (scene.settings.samples || scene.settings.sample_spacing ||
+      std::ranges::none_of(plan.groups, [](const BodyPlan& group) { return group.samples > 2 * kFew; }))
+    return {};
+  Scene trial = scene;
+  trial.settings.samples = kFew;
+  const double less = expected_seconds(trial, make_plan(trial, world));
+  if (less > kWorthwhile * seconds) return {};
+  return fmt::format("; about {:.0f} s, for less detail, with --set settings.samples={}", std::ceil(less),
+                     kFew);
+}
+
 Paragraphs paragraphs_of(const Scene& scene, const World& world, const Plan& plan) {
   Paragraphs text;
   add_row(text, "scene",
@@ -128,8 +144,9 @@ Paragraphs paragraphs_of(const Scene& scene, const World& world, const Plan& pla
   add_row(text, "memory", "about " + short_bytes(plan.bytes) + " at the peak");
   if (const double seconds = expected_seconds(scene, plan); seconds > kLong)
     add_row(text, "time",
-            fmt::format("about {} s of CPU{}", grouped(std::uint64_t(seconds)),
-                        scene.settings.until_error ? ", plus the time to reach settings.until_error" : ""));
+            fmt::format("about {} s of CPU{}{}", grouped(std::uint64_t(seconds)),
+                        scene.settings.until_error ? ", plus the time to reach settings.until_error" : "",
+                        fewer_samples_text(scene, world, plan, seconds)));
   return text;
 }
 

@@ -159,7 +159,11 @@ Scene read_scene(const Document& document) {
   const auto unit = reader.find("mm_per_unit");
   const double mm_per_unit = scene.mm_per_unit = unit ? unit->number() : 1;
   if (const auto media = reader.find("media"))
-    for (const Value& medium : media->members()) scene.media.push_back(read_medium(medium, mm_per_unit));
+    for (const Value& medium : media->members()) {
+      scene.media.push_back(read_medium(medium, mm_per_unit));
+      for (std::string& warning : keys_without_effect(medium, scene.media.back()))
+        scene.warnings.push_back(std::move(warning));
+    }
   ShapeContext context{mm_per_unit, &scene.media, {}};
   scene.shapes = read_named<Shape>(
       reader.find("shapes"), "shape",
@@ -334,7 +338,7 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
   }
   Scene scene = read_scene(document);
   scene.camera_frames = camera_frames;
-  scene.warnings = document.warnings;
+  scene.warnings.insert(scene.warnings.begin(), document.warnings.begin(), document.warnings.end());
   for (std::string& warning : texture_warnings(scene)) scene.warnings.push_back(std::move(warning));
   return scene;
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,6 +10,7 @@
 #include "input/presets.h"
 #include "input/readers.h"
 #include "scene/scene_properties.h"
+#include "scene/source_place.h"
 
 namespace opaline {
 namespace {
@@ -117,6 +120,22 @@ void read_textured_values(const ObjectReader& reader, Medium& medium) {
 }
 
 }  // namespace
+
+std::vector<std::string> keys_without_effect(const Value& value, const Medium& medium) {
+  const ObjectReader reader(value, "medium");
+  std::vector<std::string> warnings;
+  const auto check = [&](const char* key, ProfileKind user) {
+    const auto unused = reader.find(key);
+    if (!unused || medium.profile == user) return;
+    warnings.push_back(
+        text_at(unused->place(),
+                fmt::format("'{}' has no effect with the profile '{}'; it applies to '{}'", unused->path(),
+                            kProfileNames[std::size_t(*medium.profile)], kProfileNames[std::size_t(user)])));
+  };
+  check("thickness", ProfileKind::multipole);
+  check("fit", ProfileKind::normalized_diffusion);
+  return warnings;
+}
 
 double weighted_ior(double ior, double weight) {
   if (weight == 1) return ior;

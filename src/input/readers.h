@@ -35,6 +35,8 @@ double weighted_ior(double ior, double weight);
 Grain read_grain(const ObjectReader& reader);
 
 Medium read_medium(const Value& value, double mm_per_unit);
+/// Warnings of keys for another profile than the medium's.
+std::vector<std::string> keys_without_effect(const Value& value, const Medium& medium);
 /// `name`: default name of the shape.
 Shape read_shape(const Value& value, const std::string& name, ShapeContext& context);
 Light read_light(const Value& value, const std::string& name, double mm_per_unit);

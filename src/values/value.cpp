@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
@@ -53,6 +54,13 @@ bool is_number_text(std::string_view text) {
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && end == text.data() + text.size();
+}
+
+/// "5%" as "0.05"; empty for another text.
+std::string fraction_of(std::string_view text) {
+  if (!text.ends_with('%')) return {};
+  text.remove_suffix(1);
+  return is_number_text(text) ? short_number(std::strtod(std::string(text).c_str(), nullptr) / 100) : "";
 }
 
 /// "#rrggbb" as linear values, or nothing.
@@ -269,6 +277,8 @@ const Node& Value::require_kind(Node::Kind kind, const std::string& expected) co
   if (kind == Node::Kind::number && node_->kind == Node::Kind::string) {
     if (names_no_finite_number(node_->text)) fail("is not a finite number", expected);
     if (is_number_text(node_->text)) fail("is a number in quotes", expected + " without quotes");
+    if (const std::string fraction = fraction_of(node_->text); !fraction.empty())
+      fail("is a percentage (did you mean " + fraction + "?)", expected);
   }
   if (node_->kind != kind) fail("has the wrong type", expected);
   return *node_;

@@ -195,7 +195,7 @@ TEST(SceneErrors, ObjectsAreNamedByTheirKeys) {
   expect_fragments(error_of(R"({"film": {"exposure": {}}})"), {"got an object without keys"});
 }
 
-// Claim: a text in place of a number that names infinity or a number is called so. Source: by hand. Fails if: it is the wrong type
+// Claim: a text in place of a number that names infinity, a number or a percentage is called so. Source: by hand. Fails if: it is the wrong type
 // alone.
 TEST(SceneErrors, TextsInPlaceOfNumbers) {
   for (const char* text : {"-Inf", "inf", "NaN", "+infinity"}) {
@@ -206,6 +206,8 @@ TEST(SceneErrors, TextsInPlaceOfNumbers) {
   }
   expect_fragments(error_of(R"({"film": {"exposure": "0.5"}})"),
                    {"'film.exposure' is a number in quotes", "without quotes", "got \"0.5\""});
+  expect_fragments(error_of("{}", {"settings.until_error=5%"}),
+                   {"'settings.until_error' is a percentage (did you mean 0.05?)"});
 }
 
 }  // namespace

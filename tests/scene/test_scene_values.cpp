@@ -258,5 +258,27 @@ TEST(SceneValues, Thickness) {
   EXPECT_EQ(scene_of(R"("profile": "multipole", "thickness": 2)", other).media[0].thickness, 20);
 }
 
+// Claim: a key for another profile is reported, with its place and the profile using it. Source: scenes/README.md.
+// Fails if: the profile is not compared, or keys without a profile of their own are reported.
+TEST(SceneValues, KeysOfOtherProfilesAreReported) {
+  const auto warnings_of = [](const std::string& keys) {
+    return parse_scene(R"({"media": {"m": {"preset": "marble", )" + keys + "}}}", "x.json").warnings;
+  };
+  for (const char* used :
+       {R"("thickness": 2)", R"("fit": "dmfp")", R"("profile": "multipole", "thickness": 2)",
+        R"("profile": "normalized_diffusion", "fit": "dmfp")"})
+    EXPECT_TRUE(warnings_of(used).empty()) << used;
+  const std::vector<std::string> thickness = warnings_of(R"("profile": "dipole", "thickness": 2)"),
+                                 fit = warnings_of(R"("profile": "dipole", "fit": "dmfp")");
+  ASSERT_EQ(thickness.size(), 1);
+  EXPECT_EQ(thickness[0].substr(0, 9), "x.json:1:") << thickness[0];
+  EXPECT_NE(thickness[0].find(
+                "'media.m.thickness' has no effect with the profile 'dipole'; it applies to 'multipole'"),
+            std::string::npos)
+      << thickness[0];
+  ASSERT_EQ(fit.size(), 1);
+  EXPECT_NE(fit[0].find("applies to 'normalized_diffusion'"), std::string::npos) << fit[0];
+}
+
 }  // namespace
 }  // namespace opaline
