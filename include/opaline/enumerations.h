@@ -70,10 +70,12 @@ enum class Method {
   volume,            ///< random walks inside the bodies: the reference without a model, noisy
   volume_diffusion,  ///< the diffusion equation inside the bodies: no kernel, no noise
   automatic,         ///< volume_diffusion or hierarchical, whichever suits a body
-  preintegrated      ///< diffusion in a ball of the local curvature: for moving objects, without a precompute
+  preintegrated,     ///< diffusion in a ball of the local curvature: for moving objects, without a precompute
+  image_space        ///< `hierarchical` with samples seen from the lights: for moving objects
 };
-inline constexpr std::array<std::string_view, 7> kMethodNames{
-    "hierarchical", "lambert", "direct", "volume", "volume_diffusion", "auto", "preintegrated"};
+inline constexpr std::array<std::string_view, 8> kMethodNames{"hierarchical",  "lambert",          "direct",
+                                                              "volume",        "volume_diffusion", "auto",
+                                                              "preintegrated", "image_space"};
 constexpr NameList names_of(Method) {
   return kMethodNames;
 }

@@ -2,6 +2,7 @@
 #include "benchmark/ladder.h"
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "input/schema.h"
@@ -25,6 +26,8 @@ std::vector<Series> all_series(std::size_t samples) {
                     fourfold = scaled(samples, 4);
   return {
       {"lambert", "", "", {""}, {""}},
+      {"preintegrated", "", "", {""}, {""}},
+      {"image_space", "", "", {""}, {""}},
       {"hierarchical", "", "", {""}, {""}},
       {"hierarchical", "dual_tree", "tolerance", {"0.1", "0.02", "0.005", "0.001"}, {"0.02"}},
       {"hierarchical", "surface_cache", "tolerance", {"0.02", "0.005"}, {"0.02"}},
@@ -59,8 +62,10 @@ std::vector<std::string> overrides_of(const Rung& rung, std::span<const std::str
 std::vector<Rung> ladder(const LadderInput& input) {
   std::vector<Rung> rungs;
   for (const Series& series : all_series(input.planned_samples)) {
-    // Without translucent shapes there are no samples and no tree.
-    if (input.planned_samples == 0 && series.method == "hierarchical") continue;
+    // Without translucent shapes there are no samples, and nothing but diffuse reflection.
+    constexpr std::array kOfBodies{"hierarchical", "preintegrated", "image_space"};
+    if (input.planned_samples == 0 && std::ranges::find(kOfBodies, series.method) != kOfBodies.end())
+      continue;
     if (!input.bounces && series.knob == "bounces") continue;
     for (const std::string& value : input.quick ? series.quick_values : series.values)
       rungs.push_back({series.method, series.evaluator, series.knob, value});
@@ -69,7 +74,9 @@ std::vector<Rung> ladder(const LadderInput& input) {
 }
 
 std::vector<Rung> truth_ladder(bool quick) {
-  std::vector<Rung> rungs{{"lambert", "", "", ""}, {"hierarchical", "", "", ""}};
+  std::vector<Rung> rungs;
+  for (const char* method : {"lambert", "preintegrated", "image_space", "hierarchical"})
+    rungs.push_back({method, "", "", ""});
   for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind)
     if (ProfileKind(kind) != ProfileKind::directional_dipole)  // `direct` only
       rungs.push_back({"hierarchical", "", "profile", std::string(kProfileNames[kind]), true});

@@ -204,7 +204,8 @@ std::span<const Member<Settings>> settings_members() {
           "sampling, slow and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the "
           "reference; `\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the "
           "reference; `\"preintegrated\"`: each hit as on a ball of the local curvature, at about twice the "
-          "cost of `\"lambert\"`, for objects in motion"),
+          "cost of `\"lambert\"`, for objects in motion; `\"image_space\"`: `\"hierarchical\"` with samples "
+          "seen from the lights, for objects in motion"),
       member<&Settings::evaluator>(
           "evaluator", choice, "", kFiniteNumber, "", {exitance, surfaces},
           "hierarchical evaluation: `\"dual_tree\"`: clusters of shading points against octree nodes, to "

@@ -6,6 +6,7 @@
 #include "methods/automatic/automatic_method.h"
 #include "methods/direct/direct_method.h"
 #include "methods/hierarchical/hierarchical_method.h"
+#include "methods/image_space/image_space_method.h"
 #include "methods/lambert/lambert_method.h"
 #include "methods/preintegrated/preintegrated_method.h"
 #include "methods/volume/volume_method.h"
@@ -21,9 +22,11 @@ const SubsurfaceMethod& method_of(Method method) {
   static const VolumeDiffusionMethod volume_diffusion;
   static const AutomaticMethod automatic;
   static const PreintegratedMethod preintegrated;
+  static const ImageSpaceMethod image_space;
   // In the order of the enumeration.
-  static const auto kAll = std::to_array<const SubsurfaceMethod*>(
-      {&hierarchical, &lambert, &direct, &volume, &volume_diffusion, &automatic, &preintegrated});
+  static const auto kAll =
+      std::to_array<const SubsurfaceMethod*>({&hierarchical, &lambert, &direct, &volume, &volume_diffusion,
+                                              &automatic, &preintegrated, &image_space});
   static_assert(std::tuple_size_v<decltype(kAll)> == kMethodNames.size());
   return *kAll[std::size_t(method)];
 }

@@ -78,7 +78,7 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
       if (light.is_seen) seen_.add(light);
     }
   std::vector<bool> follows_light(input.scene.shapes.size());
-  if (method_of(input.scene.settings.method).needs_samples())  // else bodies are left from another method
+  if (method_of(input.scene.settings.method).needs_bodies())  // else bodies are left from another method
     for (const Body& body : input.groups)
       for (const std::uint32_t mesh : body.plan.meshes)
         follows_light[mesh] = method_of(body.plan.method).follows_textures_inside(true);

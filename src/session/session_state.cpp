@@ -124,7 +124,9 @@ void Session::State::anchor(Scene scene, Monitor* monitor) {
   const CancelScope scope(monitor);
   edit(std::move(scene));
   reference_ = plan_.groups;
-  const auto has_placed = [](const BodyPlan& group) { return !(group.cell > 0); };
+  const auto has_placed = [](const BodyPlan& group) {
+    return method_of(group.method).needs_samples() && !(group.cell > 0);
+  };
   if (!is_needed() || std::ranges::none_of(plan_.groups, has_placed)) return;
   arrange_bodies();
   update_rays();
@@ -213,9 +215,11 @@ void Session::State::prepare(Monitor* monitor) {
     const Stopwatch watch;
     if (work()) costs_.push_back(watch.cost(stage));
   };
+  const bool needs_samples = method_of(scene_.settings.method).needs_samples();
   in_stage("sampling", [&] {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) update_samples(bodies_[b], keys_[b], input, b);
-    return true;
+    for (std::size_t b = 0; needs_samples && b < bodies_.size(); ++b)
+      update_samples(bodies_[b], keys_[b], input, b);
+    return needs_samples;
   });
   in_stage("irradiance", [&] {
     bool is_needed = false;
@@ -239,7 +243,8 @@ void Session::State::prepare(Monitor* monitor) {
       return true;
     });
   }
-  if (std::ranges::any_of(plan_.groups, [&](const BodyPlan& body) { return gathers_light(scene_, body); }))
+  if (needs_samples &&
+      std::ranges::any_of(plan_.groups, [&](const BodyPlan& body) { return gathers_light(scene_, body); }))
     in_stage("bounces", [&] {
       update_bounces(bodies);
       return true;

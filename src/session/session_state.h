@@ -27,7 +27,7 @@ struct Session::State {
   void prepare(Monitor* monitor);
 
   bool is_needed() const {
-    return method_of(scene_.settings.method).needs_samples() && !plan_.groups.empty();
+    return method_of(scene_.settings.method).needs_bodies() && !plan_.groups.empty();
   }
   /// Bodies used by the image: none if the method or the plan has none, even if later scenes may reuse some.
   std::span<const Body> bodies() const { return is_needed() ? bodies_ : std::span<const Body>{}; }

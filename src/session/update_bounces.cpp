@@ -175,7 +175,7 @@ void Session::State::update_bounced_places(const RenderInput& input) {
   if (bounced_ != nullptr && key != StageKey{} && key == bounced_key_) return;
   std::vector<BodyStages> stages = body_stages(precompute, lights);
   std::optional<DirectlyLitBodies> directly_lit;  // refers to the stages
-  if (is_needed()) directly_lit.emplace(stages);
+  if (is_needed() && method_of(scene_.settings.method).needs_samples()) directly_lit.emplace(stages);
   bounced_ = opaline::bounced_places(input);
   bounced_key_ = key;
 }

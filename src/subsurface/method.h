@@ -29,6 +29,8 @@ class SubsurfaceMethod {
 
   /// Requirements: samples over the surface, and light transmitted into the body there.
   virtual bool needs_samples() const { return true; }
+  /// True if bodies have a state from `prepare`; false: each hit is shaded by itself.
+  virtual bool needs_bodies() const { return needs_samples(); }
   virtual bool needs_transmitted_light() const { return true; }
   /// True if textures of a medium vary it inside a body, closed or open (TextureMix::medium), not just at its
   /// surface.
@@ -109,11 +111,6 @@ class SubsurfaceMethod {
   /// Radiant exitance at hits.
   /// in    body: prepared; must outlive the field, as the input
   virtual std::unique_ptr<Field> field(const RenderInput&, const Body&) const { return nullptr; }
-  /// Radiant exitance at hits on shapes of a medium, by a method without samples; null: diffuse reflection.
-  /// in    medium: index into the scene's media; the input must outlive the field
-  virtual std::unique_ptr<Field> field_of_medium(const RenderInput&, std::size_t /*medium*/) const {
-    return nullptr;
-  }
   /// The image, by a method that sums passes over it; none: the renderer shades the fields.
   virtual std::optional<RenderResult> render_image(const PrecomputeInput&) const { return {}; }
 };

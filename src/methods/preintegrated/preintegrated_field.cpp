@@ -6,26 +6,18 @@
 #include <limits>
 #include <numbers>
 
-#include "bodies/body.h"
 #include "core/random.h"
 #include "geometry/vertex_curvature.h"
 #include "irradiance/sample_key.h"
 #include "irradiance/shadow_batch.h"
 #include "lights/light.h"
 #include "lights/shared_rays.h"
+#include "subsurface/body_stages.h"
 #include "transport/fresnel.h"
 #include "transport/half_space.h"
 
 namespace opaline {
 namespace {
-
-/// Unoccluded light of one shadow ray.
-struct Arriving {
-  std::uint32_t hit;
-  float cosine;     // to the normal
-  RgbF irradiance;  // across the direction
-  RgbF returned;    // exitance over it
-};
 
 /// All directions of a hemisphere alike: those along the surface count, too.
 LightSample sample_hemisphere(const Vec3f& normal, std::array<double, 2> unit_square, int samples) {
@@ -38,6 +30,12 @@ LightSample sample_hemisphere(const Vec3f& normal, std::array<double, 2> unit_sq
   return {direction, std::numeric_limits<float>::infinity(), float(2 * std::numbers::pi / samples)};
 }
 
+/// Weight of the body's thickness for light from behind, by the cosine to the normal.
+float share_behind(float cosine) {
+  constexpr float kFirst = .1f, kLast = .4f;  // cosines below the horizon
+  return std::clamp((-cosine - kFirst) / (kLast - kFirst), 0.f, 1.f);
+}
+
 template <class Value>
 Value at_hit(const Mesh& mesh, std::span<const Value> at_vertices, const Hit& hit) {
   const auto& [a, b, c] = mesh.triangles[hit.triangle];
@@ -46,44 +44,52 @@ Value at_hit(const Mesh& mesh, std::span<const Value> at_vertices, const Hit& hi
 
 }  // namespace
 
-PreintegratedField::PreintegratedField(const RenderInput& input, std::size_t medium)
-    : rays_(input.rays),
-      smooth_(input.world.meshes.size()),
-      world_(input.world),
-      eta_(float(input.scene.media[medium].eta)),
-      samples_per_pixel_(input.scene.film.samples_per_pixel) {
-  const Medium& own = input.scene.media[medium];
-  const DiffuseProfile profile = make_diffuse_profile(own, input.world.unit);
-  const Rgb absorbed = reduced_absorption(own);
+MediumResponse make_response(const Medium& medium, const World& world) {
+  const DiffuseProfile profile = make_diffuse_profile(medium, world.unit);
+  const Rgb absorbed = reduced_absorption(medium);
   constexpr double kHalfOfGaussian = 1.177;  // wave number x deviation: a Gaussian keeps half of the contrast
+  RgbF kept, total;
   double inverse_width = 0;
+  std::vector<CalibratedMedium> media;
   for (std::size_t c = 0; c < 3; ++c) {
     HomogeneousMedium reduced{.eta = profile.eta};
     if (profile.total[c] > 0) {
       // Without a mean free path, a ball of any size is flat.
-      const double length = std::max(profile.mean_free_path[c], 1e-9 * input.world.diagonal);
+      const double length = std::max(profile.mean_free_path[c], 1e-9 * world.diagonal);
       reduced = {absorbed[c] / length, (1 - absorbed[c]) / length, 0, profile.eta};
     }
-    const CalibratedMedium calibrated(reduced);
-    channels_.emplace_back(calibrated);
+    const CalibratedMedium& calibrated = media.emplace_back(reduced);
     if (!(reduced.sigma_s > 0)) continue;
     const double half = half_contrast(calibrated);
     inverse_width += half / kHalfOfGaussian / 3;
-    kept_[c] = float(kept_contrast(calibrated, 2 * half));
-    total_[c] = float(HalfSpace(1 - reduced.albedo(), reduced.eta).diffuse_share());
+    kept[c] = float(kept_contrast(calibrated, 2 * half));
+    total[c] = float(HalfSpace(1 - reduced.albedo(), reduced.eta).diffuse_share());
   }
-  if (!(inverse_width > 0)) return;
-  nearest_ = float(1 / inverse_width);
-  for (std::size_t m = 0; m < smooth_.size(); ++m) {
-    if (input.scene.shapes[m].medium != medium) continue;
-    const Mesh& mesh = input.world.meshes[m];
-    smooth_[m].normals = blurred_normals(mesh, 1 / inverse_width);
-    smooth_[m].curvatures = mean_curvature(mesh, smooth_[m].normals);
-  }
+  return {SphereResponse({media[0], media[1], media[2]}), kept, total,
+          inverse_width > 0 ? float(1 / inverse_width) : 0};
+}
+
+SmoothSurface smoothed(const Mesh& mesh, float width) {
+  SmoothSurface smooth;
+  if (!(width > 0)) return smooth;
+  smooth.normals = blurred_normals(mesh, double(width));
+  smooth.curvatures = mean_curvature(mesh, smooth.normals);
+  return smooth;
+}
+
+PreintegratedField::PreintegratedField(const RenderInput& input, const Body& body)
+    : rays_(input.rays),
+      world_(input.world),
+      medium_(*state_of<PreintegratedState>(body).response.value),
+      surfaces_(input.world.meshes.size()),
+      eta_(float(body.profile.eta)),
+      samples_per_pixel_(input.scene.film.samples_per_pixel) {
+  const std::vector<SmoothSurface>& surfaces = state_of<PreintegratedState>(body).surfaces.value;
+  for (std::size_t m = 0; m < surfaces.size(); ++m) surfaces_[body.plan.meshes[m]] = &surfaces[m];
 }
 
 PreintegratedField::Place PreintegratedField::smooth_at(const SurfacePoint& point, const Hit& hit) const {
-  const auto& [normals, curvatures] = smooth_[hit.mesh];
+  const auto& [normals, curvatures] = *surfaces_[hit.mesh];
   if (normals.empty()) return {point.normal, 0};
   const Mesh& mesh = world_.meshes[hit.mesh];
   return {normalized(at_hit<Vec3f>(mesh, normals, hit)), at_hit<float>(mesh, curvatures, hit)};
@@ -91,33 +97,79 @@ PreintegratedField::Place PreintegratedField::smooth_at(const SurfacePoint& poin
 
 RgbF PreintegratedField::response(const Place& place, const Vec3f& normal, const Vec3f& towards) const {
   const float cosine = dot(normal, towards), smooth = dot(place.normal, towards);
-  RgbF response;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const SphereResponse& channel = channels_[c];
-    const float detail = cosine == smooth ? 0 : channel.at(cosine, 0) - channel.at(smooth, 0);
-    response[c] = std::max(0.f, channel.at(smooth, place.curvature) + kept_[c] * detail);
-  }
-  return response;
+  const SphereResponse& ball = medium_.ball;
+  const RgbF curved = ball.at(smooth, place.curvature);
+  if (cosine == smooth) return curved;
+  return component_max(RgbF(0), curved + medium_.kept * (ball.at(cosine, 0) - ball.at(smooth, 0)));
+}
+
+// Ball with this chord in the direction, by the shading normal; near the horizon, the smooth surface.
+PreintegratedField::Place PreintegratedField::through(const SurfacePoint& point, const Place& place,
+                                                      const Vec3f& towards, float thickness) const {
+  const float cosine = dot(point.normal, towards), behind = share_behind(cosine);
+  if (!(behind > 0)) return place;
+  const float convex = std::max(0.f, place.curvature);
+  const float least =
+      std::min(.5f * medium_.width, -2 * cosine / std::max(convex, 1e-9f));  // bumps are no body
+  return {normalized(point.normal * behind + place.normal * (1 - behind)),
+          behind * -2 * cosine / std::max(thickness, least) + (1 - behind) * convex};
+}
+
+// Distance from a hit without own occluders: light spreads around nearer ones, and crosses to the far side of a ball.
+float PreintegratedField::first_occluder(const Place& place, const Vec3f& towards, float thickness) const {
+  constexpr float kMost = 10;  // widths
+  if (thickness > 0) return std::max(thickness * 1.001f, medium_.width);
+  const float chord = -2 * dot(place.normal, towards) / std::max(place.curvature, 1e-9f);
+  return std::clamp(1.1f * chord, medium_.width, kMost * medium_.width);
 }
 
 // Distance through the body to the entry point of the light.
-float PreintegratedField::thickness_along(const SurfacePoint& point, const Vec3f& towards) const {
-  TracedRay inside{Ray(point.position - point.geometric * point.offset, towards), {}};
-  rays_.intersect_one(inside);
-  return inside.hit.mesh == Hit::kMiss ? 0 : inside.ray.far;
+void PreintegratedField::find_thickness(std::span<const SurfacePoint> points,
+                                        std::span<Incident> incident) const {
+  std::vector<TracedRay> inside;
+  std::vector<std::size_t> numbers;
+  for (std::size_t i = 0; i < incident.size(); ++i) {
+    const SurfacePoint& point = points[incident[i].hit];
+    if (!(share_behind(dot(point.normal, incident[i].towards)) > 0)) continue;
+    inside.push_back({Ray(point.position - point.geometric * point.offset, incident[i].towards), {}});
+    numbers.push_back(i);
+  }
+  rays_.intersect(inside);
+  for (std::size_t r = 0; r < inside.size(); ++r)
+    if (inside[r].hit.mesh != Hit::kMiss) incident[numbers[r]].thickness = inside[r].ray.far;
 }
 
-// Curvature of the ball with this chord in the direction; near the horizon, of the surface.
-float PreintegratedField::curvature_through(float cosine, float curvature, float thickness) const {
-  constexpr float kFirst = .1f, kLast = .4f;  // cosines below the horizon
-  const float convex = std::max(0.f, curvature);
-  const float share = std::clamp((-cosine - kFirst) / (kLast - kFirst), 0.f, 1.f);
-  if (!(share > 0)) return convex;
-  const float least = std::min(.5f * nearest_, -2 * cosine / std::max(convex, 1e-9f));  // bumps are no body
-  return share * -2 * cosine / std::max(thickness, least) + (1 - share) * convex;
+// Shadow rays; on the far side of a body, from the entry point of the light.
+void PreintegratedField::add_unoccluded(std::span<const SurfacePoint> points, std::span<const Place> smooth,
+                                        std::span<Incident> incident, LeavingLight& result) const {
+  find_thickness(points, incident);
+  std::vector<Ray> shadow;
+  std::vector<std::size_t> numbers;
+  std::vector<RgbF> returned;  // exitance over irradiance across the direction
+  for (std::size_t i = 0; i < incident.size(); ++i) {
+    const auto& [hit, towards, distance, irradiance, thickness] = incident[i];
+    const SurfacePoint& point = points[hit];
+    const RgbF response_here =
+        response(through(point, smooth[hit], towards, thickness), point.normal, towards);
+    const float near = first_occluder(smooth[hit], towards, thickness) + point.offset;
+    if (!(near < distance) || !(max_component(response_here) > 0)) continue;
+    const Vec3f from = point.position + point.geometric * (thickness > 0 ? 0 : point.offset);
+    shadow.emplace_back(from + towards * near, towards, (distance - near) * .9999f);
+    numbers.push_back(i);
+    returned.push_back(response_here);
+  }
+  rays_.occluded(shadow);
+  for (std::size_t r = 0; r < shadow.size(); ++r) {
+    if (shadow[r].far < 0) continue;
+    const Incident& light = incident[numbers[r]];
+    result.exitance[light.hit] += returned[r] * light.irradiance;
+    const float cosine = std::min(1.f, dot(points[light.hit].normal, light.towards));
+    if (cosine > 0)
+      result.irradiance[light.hit] +=
+          light.irradiance * (cosine * (eta_ > 0 ? fresnel_transmittance(cosine, eta_) : 1));
+  }
 }
 
-// Shadow rays from all hits; on the far side of a body, from the entry point of the light.
 void PreintegratedField::add_lights(const PointIrradianceInput& lighting, std::span<const Light> lights,
                                     std::span<const Place> smooth, LeavingLight& result) const {
   constexpr std::size_t kAtOnce = 4096;  // rays
@@ -126,29 +178,17 @@ void PreintegratedField::add_lights(const PointIrradianceInput& lighting, std::s
   const int sides = is_all_around ? 2 : 1;  // each with its share of the rays
   const int samples = is_delta(light) ? 1 : std::max(1, lighting.light_samples / sides);
   const std::uint64_t seed = light_seed(lighting.seed, light);
-  std::vector<Ray> shadow;
-  std::vector<Arriving> arriving;
-  const auto trace = [&] {
-    rays_.occluded(shadow);
-    for (std::size_t r = 0; r < shadow.size(); ++r) {
-      if (shadow[r].far < 0) continue;
-      const auto& [hit, cosine, irradiance, returned] = arriving[r];
-      result.exitance[hit] += returned * irradiance;
-      if (cosine > 0)
-        result.irradiance[hit] +=
-            irradiance * (cosine * (eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.f), eta_) : 1));
-    }
-    shadow.clear();
-    arriving.clear();
+  std::vector<Incident> incident;
+  const auto finish = [&] {
+    add_unoccluded(lighting.points, smooth, incident, result);
+    incident.clear();
   };
   for (std::size_t i = 0; i < lighting.points.size(); ++i) {
-    const SurfacePoint& point = lighting.points[i];
     const auto [index, part] = part_of(lighting.keys[i]);
     const std::array<double, 2> shift{unit_double(hash_bits(seed, 2 * index)),
                                       unit_double(hash_bits(seed, 2 * index + 1))};
     for (int s = 0; s < samples * sides; ++s) {
-      const auto& [normal, curvature] = smooth[i];
-      const Vec3f about = s % sides == 0 ? normal : -normal;
+      const Vec3f about = s % sides == 0 ? smooth[i].normal : -smooth[i].normal;
       const std::array<double, 2> square =
           r2_point(part * std::uint64_t(samples) + std::uint64_t(s / sides), shift);
       std::array<float, 3> weights{};
@@ -157,29 +197,16 @@ void PreintegratedField::add_lights(const PointIrradianceInput& lighting, std::s
         sample = sample_hemisphere(about, square, samples);
         weights[0] = sample.weight;
       } else {
-        sample = sample_lights(lights, point.position, about, square, samples, weights);
+        sample = sample_lights(lights, lighting.points[i].position, about, square, samples, weights);
       }
-      const float cosine = dot(normal, sample.direction);
       if (!(std::ranges::max(weights) > 0) || (sides == 2 && !(dot(about, sample.direction) > 0))) continue;
-      Place place = smooth[i];
-      float across = 0;
-      if (dot(point.geometric, sample.direction) < 0) {
-        across = thickness_along(point, sample.direction);
-        place.curvature = curvature_through(cosine, curvature, across);
-      }
-      const RgbF returned = response(place, point.normal, sample.direction);
-      const float near = std::max(across * 1.001f, nearest_) + point.offset;
-      if (!(near < sample.distance) || !(max_component(returned) > 0)) continue;
-      const Vec3f from = point.position + point.geometric * (across > 0 ? 0 : point.offset);
-      shadow.emplace_back(from + sample.direction * near, sample.direction,
-                          (sample.distance - near) * .9999f);
       RgbF irradiance;
       for (std::size_t l = 0; l < lights.size(); ++l) irradiance += RgbF(emission(lights[l])) * weights[l];
-      arriving.push_back({std::uint32_t(i), dot(point.normal, sample.direction), irradiance, returned});
+      incident.push_back({std::uint32_t(i), sample.direction, sample.distance, irradiance});
     }
-    if (shadow.size() >= kAtOnce) trace();
+    if (incident.size() >= kAtOnce) finish();
   }
-  trace();
+  finish();
 }
 
 LeavingLight PreintegratedField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
@@ -200,7 +227,7 @@ LeavingLight PreintegratedField::at(const SurfaceHits& hits, PointIrradianceInpu
     add_lights(lighting, lighting.lights.subspan(l, together), smooth, light);
   }
   for (std::size_t i = 0; i < lighting.bounced.size(); ++i) {
-    light.exitance[i] += total_ * lighting.bounced[i];
+    light.exitance[i] += medium_.total * lighting.bounced[i];
     light.irradiance[i] += lighting.bounced[i];
   }
   for (std::size_t i = 0; i < hits.textures.size(); ++i) {

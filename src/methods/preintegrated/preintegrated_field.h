@@ -2,19 +2,42 @@
 // Exitance at hits from the light there and the curvature, as of a ball.
 #pragma once
 
-#include <array>
+#include <memory>
 #include <vector>
 
+#include "bodies/body.h"
 #include "methods/preintegrated/sphere_response.h"
+#include "stages/stage_store.h"
 #include "subsurface/field.h"
 #include "subsurface/render_input.h"
 
 namespace opaline {
 
+/// Response of a medium, the same for all its bodies.
+struct MediumResponse {
+  SphereResponse ball;
+  RgbF kept;        ///< contrast of detail
+  RgbF total;       ///< exitance of a flat body over even transmitted irradiance
+  float width = 0;  ///< of the blur of details, world units; 0: none, light leaves where it enters
+};
+MediumResponse make_response(const Medium& medium, const World& world);
+
+/// Surface of a mesh, blurred over the travel distance of light; at its vertices. Empty: not blurred.
+struct SmoothSurface {
+  std::vector<Vec3f> normals;
+  std::vector<float> curvatures;
+};
+SmoothSurface smoothed(const Mesh& mesh, float width);
+
+struct PreintegratedState : MethodState {
+  static constexpr Method kMethod = Method::preintegrated;
+  StageResult<std::shared_ptr<const MediumResponse>> response;
+  StageResult<std::vector<SmoothSurface>> surfaces;  ///< one per mesh of the body
+};
+
 class PreintegratedField : public Field {
  public:
-  /// medium: index into the scene's media
-  PreintegratedField(const RenderInput& input, std::size_t medium);
+  PreintegratedField(const RenderInput& input, const Body& body);
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
@@ -23,32 +46,35 @@ class PreintegratedField : public Field {
   bool reflects() const override { return true; }
 
  private:
-  /// Surface of a mesh, blurred over the travel distance of light; at its vertices.
-  struct Smooth {
-    std::vector<Vec3f> normals;
-    std::vector<float> curvatures;
-  };
   struct Place {
     Vec3f normal;
     float curvature = 0;
   };
+  /// Light of one direction at a hit.
+  struct Incident {
+    std::uint32_t hit;
+    Vec3f towards;
+    float distance;       // of the light
+    RgbF irradiance;      // across the direction
+    float thickness = 0;  // of the body towards a light behind it; 0: the hit faces it
+  };
   Place smooth_at(const SurfacePoint& point, const Hit& hit) const;
-  float thickness_along(const SurfacePoint& point, const Vec3f& towards) const;
-  float curvature_through(float cosine, float curvature, float thickness) const;
+  Place through(const SurfacePoint& point, const Place& place, const Vec3f& towards, float thickness) const;
+  float first_occluder(const Place& place, const Vec3f& towards, float thickness) const;
   /// in    lights: sharing their rays
   void add_lights(const PointIrradianceInput& lighting, std::span<const Light> lights,
                   std::span<const Place> smooth, LeavingLight& result) const;
+  void find_thickness(std::span<const SurfacePoint> points, std::span<Incident> incident) const;
+  void add_unoccluded(std::span<const SurfacePoint> points, std::span<const Place> smooth,
+                      std::span<Incident> incident, LeavingLight& result) const;
   /// Response of the smooth surface, plus the remaining detail.
   RgbF response(const Place& place, const Vec3f& normal, const Vec3f& towards) const;
 
   const RayScene& rays_;
-  std::vector<SphereResponse> channels_;  // red, green, blue
-  std::vector<Smooth> smooth_;            // one per mesh; empty: faceted, or another medium
   const World& world_;
-  RgbF kept_;          // contrast of detail
-  RgbF total_;         // exitance of a flat body over even transmitted irradiance
-  float nearest_ = 0;  // distance of the nearest occluders: light spreads around nearer ones
-  float eta_ = 0;
+  const MediumResponse& medium_;
+  std::vector<const SmoothSurface*> surfaces_;  // one per mesh of the world; null: of another body
+  float eta_;
   int samples_per_pixel_;
 };
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `preintegrated`: each hit as on a ball of the local curvature, without a precompute.
+// `preintegrated`: each hit as on a ball of the local curvature, without a precompute of light.
 #pragma once
 
-#include "methods/preintegrated/preintegrated_field.h"
 #include "subsurface/method.h"
 
 namespace opaline {
@@ -10,6 +9,8 @@ namespace opaline {
 class PreintegratedMethod : public SubsurfaceMethod {
  public:
   bool needs_samples() const override { return false; }
+  bool needs_bodies() const override { return true; }
+  bool needs_transmitted_light() const override { return false; }
   bool uses_radial_profile() const override { return false; }
   MethodLayers layers() const override { return {}; }
   bool has_model() const override { return false; }
@@ -18,9 +19,10 @@ class PreintegratedMethod : public SubsurfaceMethod {
     return kSecondsOfShadowRay * lighting.rays;
   }
   std::string shading_stage(const Scene&) const override { return "preintegrated diffusion by curvature"; }
-  std::unique_ptr<Field> field_of_medium(const RenderInput& input, std::size_t medium) const override {
-    return std::make_unique<PreintegratedField>(input, medium);
-  }
+  const char* stage() const override { return "curvature"; }
+  void prepare(BodyStages& stages) const override;
+  StageKey direct_key(const Body& body) const override;
+  std::unique_ptr<Field> field(const RenderInput& input, const Body& body) const override;
 };
 
 }  // namespace opaline

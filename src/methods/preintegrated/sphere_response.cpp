@@ -12,7 +12,12 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kBands = 200;
+constexpr std::size_t kMostBands = 200;
+
+/// Bands of a ball, by its radius in mean free paths; small balls blur more.
+std::size_t bands_of(double radius) {
+  return std::min(kMostBands, 24 + std::size_t(2 * std::min(radius, 1e3)));
+}
 
 double decay_of(const CalibratedMedium& medium) {
   return std::sqrt(medium.absorption / medium.diffusion);
@@ -131,37 +136,54 @@ std::vector<double> transmitted_zonal(const CalibratedMedium& medium, std::size_
   return coefficients;
 }
 
-SphereResponse::SphereResponse(const CalibratedMedium& medium)
-    : length_(medium.albedo > 0 ? float(4 / medium.extinction) : 1), table_(kCurvatures) {
-  if (!(medium.albedo > 0)) return;
-  const std::vector<double> transmitted = transmitted_zonal(medium, kBands);
+SphereResponse::SphereResponse(const std::array<CalibratedMedium, 3>& media) : table_(kCurvatures) {
+  double logarithms = 0;
+  int scattering = 0;
+  for (const CalibratedMedium& medium : media)
+    if (medium.albedo > 0) logarithms += std::log(4 / medium.extinction), ++scattering;
+  if (scattering == 0) return;
+  length_ = float(std::exp(logarithms / scattering));
+  std::array<std::vector<double>, 3> transmitted;
+  for (std::size_t c = 0; c < 3; ++c) transmitted[c] = transmitted_zonal(media[c], kMostBands);
   const auto cosine_of = [](std::size_t i) { return -1 + 2 * double(i) / double(kCosines - 1); };
   parallel_chunks(kCurvatures, 1, [&](std::size_t row, std::size_t, std::size_t) {
     const double place = double(row) / double(kCurvatures - 1);
-    if (row == 0) {
-      for (std::size_t i = 0; i < kCosines; ++i) table_[0][i] = float(flat_response(medium, cosine_of(i)));
-      return;
-    }
-    const double radius = double(length_) * std::max(1e-6, (1 - place) / place);
-    const std::vector<double> response = zonal_response(medium, radius, kBands);
-    for (std::size_t i = 0; i < kCosines; ++i) {
-      double sum = 0;
-      for_each_legendre(cosine_of(i), kBands,
-                        [&](std::size_t l, double value) { sum += transmitted[l] * response[l] * value; });
-      table_[row][i] = float(std::max(0., sum));
+    const double radius = place > 0 ? double(length_) * std::max(1e-6, (1 - place) / place) : 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const CalibratedMedium& medium = media[c];
+      if (!(medium.albedo > 0)) continue;
+      const auto set = [&](std::size_t i, double value) { table_[row][i][c] = float(std::max(0., value)); };
+      if (row == 0) {
+        for (std::size_t i = 0; i < kCosines; ++i) set(i, flat_response(medium, cosine_of(i)));
+        continue;
+      }
+      const std::size_t bands = bands_of(radius * medium.extinction);
+      std::vector<double> response = zonal_response(medium, radius, bands);
+      for (std::size_t l = 0; l < bands; ++l) response[l] *= transmitted[c][l];
+      for (std::size_t i = 0; i < kCosines; ++i) {
+        double sum = 0;
+        for_each_legendre(cosine_of(i), bands,
+                          [&](std::size_t l, double value) { sum += response[l] * value; });
+        set(i, sum);
+      }
     }
   });
 }
 
-float SphereResponse::at(float cosine, float curvature) const {
+RgbF SphereResponse::at(float cosine, float curvature) const {
   const float along = std::clamp((cosine + 1) * .5f * float(kCosines - 1), 0.f, float(kCosines - 1));
-  const float bent = std::max(0.f, curvature) * length_;
+  const auto i = std::min(kCosines - 2, std::size_t(along));
+  const float u = along - float(i);
+  const auto in_row = [&](std::size_t row) {
+    const RgbF* const low = table_[row].data() + i;
+    return low[0] + (low[1] - low[0]) * u;
+  };
+  if (!(curvature > 0)) return in_row(0);
+  const float bent = curvature * length_;
   const float across = (1 - 1 / (1 + bent)) * float(kCurvatures - 1);
-  const auto i = std::min(kCosines - 2, std::size_t(along)),
-             row = std::min(kCurvatures - 2, std::size_t(across));
-  const float u = along - float(i), v = across - float(row);
-  const auto& [low, high] = std::array{table_[row].data() + i, table_[row + 1].data() + i};
-  return (1 - v) * (low[0] + u * (low[1] - low[0])) + v * (high[0] + u * (high[1] - high[0]));
+  const auto row = std::min(kCurvatures - 2, std::size_t(across));
+  const RgbF low = in_row(row);
+  return low + (in_row(row + 1) - low) * (across - float(row));
 }
 
 }  // namespace opaline

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "opaline/vec3.h"
 #include "volume/calibrated_medium.h"
 
 namespace opaline {
@@ -29,19 +30,19 @@ double kept_contrast(const CalibratedMedium& medium, double wave_number);
 /// Wave number with half of the contrast, 1/length.
 double half_contrast(const CalibratedMedium& medium);
 
-/// Exitance of a ball over the irradiance across a parallel beam, for one channel. Flat: the exact half space.
+/// Exitance of a ball over the irradiance across a parallel beam, in R G B. Flat: the exact half space.
 class SphereResponse {
  public:
-  explicit SphereResponse(const CalibratedMedium& medium);
+  explicit SphereResponse(const std::array<CalibratedMedium, 3>& media);
 
   /// in    cosine: of the beam to the normal; curvature: 1/radius, 1/length; flat if not above 0
-  float at(float cosine, float curvature) const;
+  RgbF at(float cosine, float curvature) const;
 
  private:
-  static constexpr std::size_t kCosines = 97, kCurvatures = 33;
+  static constexpr std::size_t kCosines = 97, kCurvatures = 41;
 
   float length_ = 1;  // radius at the table's middle row
-  std::vector<std::array<float, kCosines>> table_;
+  std::vector<std::array<RgbF, kCosines>> table_;
 };
 
 }  // namespace opaline

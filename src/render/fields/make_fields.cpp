@@ -2,7 +2,6 @@
 #include "render/fields/make_fields.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "diffusion/diffuse_profile.h"
 #include "irradiance/sample_key.h"
@@ -23,19 +22,18 @@ bool has_mesh(std::span<const std::uint32_t> meshes, std::size_t mesh) {
 /// Body of each mesh, or null.
 std::vector<const Body*> bodies_of_meshes(const RenderInput& input) {
   std::vector<const Body*> bodies(input.world.meshes.size());
-  if (!method_of(input.scene.settings.method).needs_samples()) return bodies;
+  if (!method_of(input.scene.settings.method).needs_bodies()) return bodies;
   for (const Body& body : input.groups)
     for (const std::uint32_t mesh : body.plan.meshes) bodies[mesh] = &body;
   return bodies;
 }
 
-/// Common properties of the meshes of a field: one of the first two, or none of them and the boundary.
+/// Common properties of the meshes of a field: one of the first two, or the boundary alone.
 struct SurfaceKind {
   const Body* group = nullptr;
   const FieldSource* source = nullptr;
   float eta = 0;
   bool is_partly_opaque = false;
-  std::optional<std::size_t> medium = {};  ///< index into the scene's media, where the method uses no body
   friend bool operator==(const SurfaceKind&, const SurfaceKind&) = default;
 };
 
@@ -47,7 +45,6 @@ SurfaceKind kind_of(const RenderInput& input, std::span<const FieldSource> sourc
   SurfaceKind kind{.group = body, .eta = float(medium.eta), .is_partly_opaque = is_partly_opaque(medium)};
   for (const FieldSource& source : sources)
     if (has_mesh(source.meshes, mesh)) kind.source = &source;
-  if (body == nullptr && kind.source == nullptr) kind.medium = shape.medium;
   return kind;
 }
 
@@ -55,9 +52,6 @@ std::unique_ptr<Field> make_field(const RenderInput& input, const SurfaceKind& k
                                   const SurfaceTextures& textures, std::span<const RgbF> albedos) {
   if (kind.group != nullptr) return method_of(kind.group->plan.method).field(input, *kind.group);
   if (kind.source != nullptr) return kind.source->make(textures, kind.eta);
-  if (kind.medium)
-    if (auto field = method_of(input.scene.settings.method).field_of_medium(input, *kind.medium))
-      return field;
   return std::make_unique<LocalField>(input, albedos, kind.eta);
 }
 

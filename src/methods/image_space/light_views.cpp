@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "methods/image_space/light_views.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bodies/surface_textures.h"
+#include "core/parallel.h"
+#include "core/random.h"
+#include "irradiance/shadow_batch.h"
+#include "lights/shared_rays.h"
+#include "transport/fresnel.h"
+
+namespace opaline {
+namespace {
+
+constexpr std::size_t kMostChannels = 3;  // of lights sharing their rays
+constexpr double kMostAcross = 4096;      // pixels of a view
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+using Weights = std::array<float, kMostChannels>;
+
+/// One view: a point of a light, or a direction.
+struct Standpoint {
+  std::array<double, 2> square;  // of the light's samples
+  Vec3f direction;               // from the body towards the light
+  float distance = kInfinity;
+  Weights weights{};  // of parallel light, one per light sharing its rays
+};
+
+std::array<Vec3d, 8> corners_of(const Bounds& box) {
+  std::array<Vec3d, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    corners[i] = {(i & 1) != 0 ? box.high.x : box.low.x, (i & 2) != 0 ? box.high.y : box.low.y,
+                  (i & 4) != 0 ? box.high.z : box.low.z};
+  return corners;
+}
+
+/// Rectangle of a view's plane, divided into pixels.
+struct Grid {
+  double low_u = 1e300, high_u = -1e300, low_v = 1e300, high_v = -1e300;
+
+  void add(double u, double v) {
+    low_u = std::min(low_u, u), high_u = std::max(high_u, u);
+    low_v = std::min(low_v, v), high_v = std::max(high_v, v);
+  }
+  /// Calls use(u, v, area) at the middle of each pixel.
+  template <class Use>
+  void for_each_pixel(double spacing, const Use& use) const {
+    const auto count = [&](double extent) {
+      return int(std::clamp(std::ceil(extent / spacing), 1., kMostAcross));
+    };
+    const int columns = count(high_u - low_u), rows = count(high_v - low_v);
+    const double width = (high_u - low_u) / columns, height = (high_v - low_v) / rows;
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column)
+        use(low_u + (column + .5) * width, low_v + (row + .5) * height, width * height);
+  }
+};
+
+void add_perspective(const Vec3d& position, const Vec3d& forward, const Grid& grid, double spacing,
+                     LightView& view) {
+  Vec3d x, y;
+  tangent_frame(forward, x, y);
+  grid.for_each_pixel(spacing, [&](double u, double v, double area) {
+    const double length2 = 1 + u * u + v * v, length = std::sqrt(length2);
+    view.rays.emplace_back(Vec3f(position), Vec3f((forward + x * u + y * v) / length));
+    view.measures.push_back(float(area / (length2 * length)));
+  });
+}
+
+bool is_all_around(const Light& light) {
+  const LightExtent shape = extent(light);
+  return !is_delta(light) && !shape.center && !shape.towards;
+}
+
+// Directions of a light all around the body. Six hemispheres share each direction by the squared cosines to
+// their axes, which bounds the weight of directions near a horizon.
+std::vector<Standpoint> directions_of(std::span<const Light> lights, const Vec3f& centre, int count,
+                                      std::uint64_t seed) {
+  const int candidates = 16 * count;  // per hemisphere
+  std::vector<Standpoint> all;
+  std::vector<double> sums{0};
+  for (int side = 0; side < 6; ++side) {
+    Vec3f axis{};
+    axis[std::size_t(side / 2)] = side % 2 == 0 ? 1.f : -1.f;
+    const std::array<double, 2> shift{unit_double(hash_bits(seed, std::uint64_t(2 * side))),
+                                      unit_double(hash_bits(seed, std::uint64_t(2 * side + 1)))};
+    for (int i = 0; i < candidates; ++i) {
+      Standpoint one{.square = r2_point(std::uint64_t(i), shift), .direction = {}};
+      const LightSample sample = sample_lights(lights, centre, axis, one.square, candidates, one.weights);
+      const float cosine = dot(axis, sample.direction);
+      if (!(cosine > 0)) continue;
+      one.direction = sample.direction;
+      double bright = 0;
+      for (std::size_t l = 0; l < lights.size(); ++l) {
+        one.weights[l] *= cosine * cosine;
+        bright += double(one.weights[l]) * max_component(emission(lights[l]));
+      }
+      if (!(bright > 0)) continue;
+      all.push_back(one);
+      sums.push_back(sums.back() + bright);
+    }
+  }
+  std::vector<Standpoint> chosen;
+  const double step = sums.back() / count;
+  for (int k = 0; k < count && step > 0; ++k) {
+    const double at = (k + .5) * step;
+    const auto i =
+        std::min(all.size() - 1, std::size_t(std::ranges::upper_bound(sums, at) - sums.begin()) - 1);
+    Standpoint one = all[i];
+    const double expected = (sums[i + 1] - sums[i]) / step;  // times it is chosen
+    for (float& weight : one.weights) weight = float(double(weight) / expected);
+    chosen.push_back(one);
+  }
+  return chosen;
+}
+
+std::vector<Standpoint> standpoints(std::span<const Light> lights, const Vec3f& centre, int light_samples,
+                                    std::uint64_t seed) {
+  const Light& light = lights[0];
+  if (is_all_around(light)) return directions_of(lights, centre, light_samples, seed);
+  const int count = is_delta(light) ? 1 : light_samples;
+  std::vector<Standpoint> all;
+  for (int i = 0; i < count; ++i) {
+    Standpoint one{.square = r2_point(std::uint64_t(i), {.5, .5}), .direction = {}};
+    const LightSample sample = sample_light(light, centre, {0, 0, 1}, one.square, count);
+    one.direction = sample.direction;
+    one.distance = sample.distance;
+    one.weights[0] = sample.weight;
+    if (std::isfinite(sample.distance) || sample.weight > 0) all.push_back(one);
+  }
+  return all;
+}
+
+/// Collects the points of one body in the views.
+class Views {
+ public:
+  Views(const PrecomputeInput& input, const BodyPlan& body)
+      : input_(input),
+        textures_(input.scene, input.world),
+        eta_(float(input.scene.media[body.medium].eta)),
+        is_own_(input.world.meshes.size()) {
+    for (const std::uint32_t mesh : body.meshes) is_own_[mesh] = true;
+  }
+
+  /// in    count: views of the light
+  std::vector<FluxSample> points(const LightView& view, std::span<const Light> lights, const Standpoint& from,
+                                 int count) const {
+    constexpr std::size_t kChunk = 4096;
+    std::vector<std::vector<FluxSample>> parts(chunk_count(view.rays.size(), kChunk));
+    parallel_chunks(view.rays.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+      std::vector<TracedRay> rays;
+      for (std::size_t i = begin; i < end; ++i) rays.push_back({view.rays[i], {}});
+      input_.rays.intersect(rays);
+      for (std::size_t i = begin; i < end; ++i) {
+        const TracedRay& met = rays[i - begin];
+        if (met.hit.mesh == Hit::kMiss || !is_own_[met.hit.mesh]) continue;
+        const float measure =
+            view.is_parallel ? view.measures[i] : view.measures[i] * met.ray.far * met.ray.far;
+        add(met, measure, lights, from, count, parts[chunk]);
+      }
+    });
+    std::vector<FluxSample> all;
+    for (const std::vector<FluxSample>& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }
+
+ private:
+  // Grazing pixels cover long strips; their area is limited, as their light is.
+  void add(const TracedRay& met, float across, std::span<const Light> lights, const Standpoint& from,
+           int count, std::vector<FluxSample>& points) const {
+    constexpr float kLeastCosine = .02f;
+    const SurfacePoint point =
+        input_.rays.surface_point(met.hit.mesh, met.hit.triangle, met.hit.u, met.hit.v);
+    Weights weights = from.weights;
+    Vec3f direction = from.direction;
+    if (std::isfinite(from.distance)) {
+      const LightSample sample = sample_light(lights[0], point.position, point.normal, from.square, count);
+      direction = sample.direction;
+      weights[0] = sample.weight;
+    }
+    const float facing = dot(point.geometric, direction),
+                cosine = std::min(1.f, dot(point.normal, direction));
+    if (!(facing > 0) || !(cosine > 0)) return;
+    RgbF emitted;
+    for (std::size_t l = 0; l < lights.size(); ++l) emitted += RgbF(emission(lights[l])) * weights[l];
+    if (!(max_component(emitted) > 0)) return;
+    if (textures_.tints_entering(met.hit.mesh)) {
+      const float width = std::sqrt(across);
+      const auto place = textures_.place(met.hit.mesh, met.hit.triangle, met.hit.u, met.hit.v,
+                                         footprint_of(point, met.ray.direction, width));
+      emitted = emitted * textures_.tint(place).entering;
+    }
+    points.push_back({point.position, across / std::max(facing, kLeastCosine),
+                      emitted * (cosine * fresnel_transmittance(cosine, eta_)), point.normal});
+  }
+
+  const PrecomputeInput& input_;
+  SurfaceTextures textures_;
+  float eta_;
+  std::vector<bool> is_own_;
+};
+
+}  // namespace
+
+LightView parallel_view(const Bounds& box, const Vec3d& towards, double reach, double spacing) {
+  Vec3d x, y;
+  tangent_frame(towards, x, y);
+  const Vec3d centre = .5 * (box.low + box.high);
+  Grid grid;
+  for (const Vec3d& corner : corners_of(box)) grid.add(dot(corner - centre, x), dot(corner - centre, y));
+  LightView view{.rays = {}, .measures = {}, .is_parallel = true};
+  const Vec3d outside = centre + towards * (2 * reach);
+  grid.for_each_pixel(spacing, [&](double u, double v, double area) {
+    view.rays.emplace_back(Vec3f(outside + x * u + y * v), Vec3f(-towards));
+    view.measures.push_back(float(area));
+  });
+  return view;
+}
+
+LightView view_from(const Bounds& box, const Vec3d& position, double spacing) {
+  constexpr double kNear = .2;  // of the distance of the box's centre
+  const Vec3d centre = .5 * (box.low + box.high);
+  const double distance = length(centre - position), radius = .5 * length(box.high - box.low);
+  LightView view;
+  Grid grid;
+  bool is_in_front = distance > 0;
+  if (is_in_front) {
+    const Vec3d forward = (centre - position) / distance;
+    Vec3d x, y;
+    tangent_frame(forward, x, y);
+    for (const Vec3d& corner : corners_of(box)) {
+      const Vec3d to = corner - position;
+      const double depth = dot(to, forward);
+      is_in_front = is_in_front && depth > kNear * distance;
+      if (is_in_front) grid.add(dot(to, x) / depth, dot(to, y) / depth);
+    }
+    if (is_in_front) add_perspective(position, forward, grid, spacing / distance, view);
+  }
+  if (is_in_front) return view;
+  grid = {-1, 1, -1, 1};
+  for (int side = 0; side < 6; ++side) {
+    Vec3d forward{};
+    forward[std::size_t(side / 2)] = side % 2 == 0 ? 1 : -1;
+    add_perspective(position, forward, grid, spacing / std::max(distance, .5 * radius), view);
+  }
+  return view;
+}
+
+std::vector<FluxSample> seen_from_lights(const PrecomputeInput& input, const BodyPlan& body, double spacing) {
+  std::vector<Light> lights;  // without trees of lights
+  for (const Light& light : input.scene.lights)
+    lights.push_back(recentred(light, input.world.origin, input.world.unit));
+  const Bounds box = bounds(input.world, body.meshes);
+  const Vec3d centre = .5 * (box.low + box.high);
+  const Views views(input, body);
+  std::vector<FluxSample> all;
+  for (std::size_t l = 0, together = 0; l < lights.size(); l += together) {
+    together = sharing_rays(std::span(lights).subspan(l));
+    const std::span<const Light> sharing = std::span(lights).subspan(l, together);
+    const std::vector<Standpoint> from =
+        standpoints(sharing, Vec3f(centre), input.scene.settings.light_samples,
+                    light_seed(input.scene.settings.seed, sharing[0]));
+    // Points of several views are less even, so there are four times as many.
+    const double apart = from.size() > 1 ? .5 * spacing * std::sqrt(double(from.size())) : spacing;
+    for (const Standpoint& one : from) {
+      const Vec3d towards(one.direction);
+      const LightView view = std::isfinite(one.distance)
+                                 ? view_from(box, centre + towards * double(one.distance), apart)
+                                 : parallel_view(box, towards, input.world.diagonal, apart);
+      const std::vector<FluxSample> points = views.points(view, sharing, one, int(from.size()));
+      all.insert(all.end(), points.begin(), points.end());
+    }
+  }
+  return all;
+}
+
+}  // namespace opaline

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Views from lights: the points of a body met by each light first, which are the points where its light enters.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bodies/body.h"
+#include "exitance/octree.h"
+#include "geometry/ray_scene.h"
+#include "geometry/world.h"
+#include "lights/light.h"
+
+namespace opaline {
+
+/// Flux transmitted at the pixels of views from all lights, with area = distance^2 x solid angle / cosine.
+/// One view for a light without an area; several from points on it or, for an environment, directions of it.
+/// in    input: scene, world and rays; spacing: of the points of one light, world units
+/// out   samples in the body's surface, unordered; empty where no light arrives
+std::vector<FluxSample> seen_from_lights(const PrecomputeInput& input, const BodyPlan& body, double spacing);
+
+/// Rays through the pixels of a view towards a box, and the solid angle of each, or the area across parallel
+/// ones.
+struct LightView {
+  std::vector<Ray> rays;
+  std::vector<float> measures;
+  bool is_parallel = false;
+};
+
+/// Parallel rays from outside of the scene.
+/// in    towards: unit, to the light; reach: diagonal of the scene; spacing: of the pixels, world units
+LightView parallel_view(const Bounds& box, const Vec3d& towards, double reach, double spacing);
+/// Rays from a point, through a plane behind which the box lies, or through six around the point.
+/// in    spacing: of the pixels at the box's centre
+LightView view_from(const Bounds& box, const Vec3d& position, double spacing);
+
+}  // namespace opaline
