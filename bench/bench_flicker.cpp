@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far the shading of a slow shot flickers: what changes from frame to frame beyond the change of a
-// picture with 16 times the samples, with samples that go along and with samples drawn anew in each frame.
+// picture with 16 times the samples, with samples that go along, with samples drawn anew in each frame, and by
+// `image_space`.
 // The first shape ripples, or the first light (a point) goes around, slowly and twice as fast. Writes a strip
 // of each slow shot, NAME-ripple.png and NAME-sweep.png: frames side by side, below them what changed beyond
 // the reference to the next frame, 20-fold, on grey: carried, then resampled. usage: bench_flicker SCENE NAME
@@ -64,11 +65,14 @@ void write_strip(const std::string& path, const std::vector<Image>& reference,
 
 /// strip: a file, or empty.
 void print_shot(const std::string& name, const std::vector<Scene>& shot, const std::string& strip) {
+  std::vector<Scene> in_image_space = shot;
+  for (Scene& scene : in_image_space) scene.settings.method = Method::image_space;
   const std::vector<Image> reference = reference_pictures(shot), carried = carried_pictures(shot),
                            resampled = resampled_pictures(shot);
-  const double along = flicker(carried, reference), anew = flicker(resampled, reference);
-  fmt::print("{:<28}{:>14.3f} %{:>9.4f} %{:>11.4f} %{:>9.1f} x\n", name, 100 * whole_change(reference),
-             100 * along, 100 * anew, anew / along);
+  const double along = flicker(carried, reference), anew = flicker(resampled, reference),
+               from_lights = flicker(carried_pictures(in_image_space), reference);
+  fmt::print("{:<28}{:>14.3f} %{:>9.4f} %{:>11.4f} %{:>9.1f} x{:>14.4f} %\n", name,
+             100 * whole_change(reference), 100 * along, 100 * anew, anew / along, 100 * from_lights);
   if (!strip.empty()) write_strip(strip, reference, carried, resampled, shot[0].film.exposure);
 }
 
@@ -88,7 +92,8 @@ int main(int argc, char** argv) try {
   std::filesystem::create_directories(folder);
   fmt::print("{} samples, {} frames of {} x {} pixels; changes over the mean\n", *scene.settings.samples,
              frames, pixels, pixels);
-  fmt::print("{:<28}{:>16}{:>11}{:>13}\n", "shot", "scene changes", "carried", "resampled");
+  fmt::print("{:<28}{:>16}{:>11}{:>13}{:>27}\n", "shot", "scene changes", "carried", "resampled",
+             "image_space");
   print_shot("ripple, 96 frames a wave", rippling(scene, kWaveLength, 96, frames, folder.string()),
              name + "-ripple.png");
   print_shot("ripple, 48 frames a wave", rippling(scene, kWaveLength, 48, frames, folder.string()), "");

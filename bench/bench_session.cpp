@@ -33,8 +33,8 @@ struct Edit {
 };
 
 // Where the time of an edit goes: loading and planning, the stages of Session::costs, the picture.
-constexpr std::array kParts = {"load",     "rays",      "sampling", "irradiance", "octree",
-                               "exitance", "diffusion", "bounces",  "picture"};
+constexpr std::array kParts = {"load",        "rays",      "sampling",  "irradiance", "octree", "exitance",
+                               "light views", "curvature", "diffusion", "bounces",    "picture"};
 constexpr std::size_t kExitance = 5;
 using PartSeconds = std::array<double, kParts.size()>;
 

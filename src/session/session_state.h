@@ -26,9 +26,7 @@ struct Session::State {
   Image first_light(Monitor* monitor);
   void prepare(Monitor* monitor);
 
-  bool is_needed() const {
-    return method_of(scene_.settings.method).needs_bodies() && !plan_.groups.empty();
-  }
+  bool is_needed() const { return method_of(scene_.settings.method).needs_bodies() && !plan_.groups.empty(); }
   /// Bodies used by the image: none if the method or the plan has none, even if later scenes may reuse some.
   std::span<const Body> bodies() const { return is_needed() ? bodies_ : std::span<const Body>{}; }
   void arrange_memories(const Scene& scene, const std::vector<StageKey>& sources);

@@ -113,6 +113,26 @@ TEST(ImageSpace, Furnace) {
   EXPECT_LT(difference(reds_by(scene, Method::image_space), reds_by(scene, Method::hierarchical)), .03);
 }
 
+// Claim: the pixels of a box that grows a little contain those of before, so points stay in slow motion. Source: a fixed
+// lattice. Fails if: the lattice begins at the box, its pixels share the box, or the middle ray follows the box's centre.
+TEST(ImageSpace, PixelsStayInSlowMotion) {
+  const Bounds before{{-5, -6, -7}, {5, 6, 7}}, after{{-5, -6, -7}, {5.3, 6.2, 7}};
+  const Vec3d towards = normalized(Vec3d{1, 2, .5});
+  const auto are_within = [](const LightView& some, const LightView& all) {
+    const auto same = [](const Ray& a, const Ray& b) {
+      const Vec3f moved = a.origin - b.origin;  // along the ray
+      return length(a.direction - b.direction) < 1e-5f && length(cross(moved, a.direction)) < 1e-3f;
+    };
+    return std::ranges::all_of(some.rays, [&](const Ray& ray) {
+      return std::ranges::any_of(all.rays, [&](const Ray& other) { return same(ray, other); });
+    });
+  };
+  const LightView small = parallel_view(before, towards, 20, .9);
+  EXPECT_GT(small.rays.size(), 100u);
+  EXPECT_TRUE(are_within(small, parallel_view(after, towards, 20.4, .95)));
+  EXPECT_TRUE(are_within(view_from(before, {30, 3, 0}, .9), view_from(after, {30, 3, 0}, .9)));
+}
+
 // Claim: a moved camera keeps the views; another light, medium or mesh does not. Source: the key of the stage. Fails if:
 // the key leaves one of them out.
 TEST(ImageSpace, CameraKeepsTheViews) {

@@ -16,18 +16,18 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kMostChannels = 3;  // of lights sharing their rays
-constexpr double kMostAcross = 4096;      // pixels of a view
+constexpr std::size_t kMostChannels = 3;  // lights sharing their rays
+constexpr double kMostAcross = 4096;      // pixels
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 using Weights = std::array<float, kMostChannels>;
 
 /// One view: a point of a light, or a direction.
 struct Standpoint {
-  std::array<double, 2> square;  // of the light's samples
+  std::array<double, 2> square;  // for the light's samples
   Vec3f direction;               // from the body towards the light
   float distance = kInfinity;
-  Weights weights{};  // of parallel light, one per light sharing its rays
+  Weights weights{};  // one per light sharing its rays; parallel light only
 };
 
 std::array<Vec3d, 8> corners_of(const Bounds& box) {
@@ -38,7 +38,13 @@ std::array<Vec3d, 8> corners_of(const Bounds& box) {
   return corners;
 }
 
-/// Rectangle of a view's plane, divided into pixels.
+/// The next step of a few per octave, so that slow motion keeps it.
+double stepped(double value) {
+  constexpr double kSteps = 4;
+  return std::exp2(std::floor(kSteps * std::log2(value)) / kSteps);
+}
+
+/// Rectangle of a view's plane, covered by pixels on a fixed lattice: in motion, points stay.
 struct Grid {
   double low_u = 1e300, high_u = -1e300, low_v = 1e300, high_v = -1e300;
 
@@ -49,16 +55,21 @@ struct Grid {
   /// Calls use(u, v, area) at the middle of each pixel.
   template <class Use>
   void for_each_pixel(double spacing, const Use& use) const {
-    const auto count = [&](double extent) {
-      return int(std::clamp(std::ceil(extent / spacing), 1., kMostAcross));
-    };
-    const int columns = count(high_u - low_u), rows = count(high_v - low_v);
-    const double width = (high_u - low_u) / columns, height = (high_v - low_v) / rows;
-    for (int row = 0; row < rows; ++row)
-      for (int column = 0; column < columns; ++column)
-        use(low_u + (column + .5) * width, low_v + (row + .5) * height, width * height);
+    const double widest = std::max(high_u - low_u, high_v - low_v);
+    const double side = stepped(std::max(spacing, widest / kMostAcross));
+    const double first_u = std::floor(low_u / side), first_v = std::floor(low_v / side);
+    for (double row = first_v; row * side < high_v; ++row)
+      for (double column = first_u; column * side < high_u; ++column)
+        use((column + .5) * side, (row + .5) * side, side * side);
   }
 };
+
+/// A direction nearby, the same for slow motion.
+Vec3d steady(const Vec3d& direction) {
+  constexpr double kSteps = 4;
+  const auto rounded = [](double x) { return std::round(kSteps * x) / kSteps; };
+  return normalized(Vec3d{rounded(direction.x), rounded(direction.y), rounded(direction.z)});
+}
 
 void add_perspective(const Vec3d& position, const Vec3d& forward, const Grid& grid, double spacing,
                      LightView& view) {
@@ -77,7 +88,7 @@ bool is_all_around(const Light& light) {
 }
 
 // Directions of a light all around the body. Six hemispheres share each direction by the squared cosines to
-// their axes, which bounds the weight of directions near a horizon.
+// their axes, to bound the weights of directions near a horizon.
 std::vector<Standpoint> directions_of(std::span<const Light> lights, const Vec3f& centre, int count,
                                       std::uint64_t seed) {
   const int candidates = 16 * count;  // per hemisphere
@@ -211,9 +222,9 @@ LightView parallel_view(const Bounds& box, const Vec3d& towards, double reach, d
   tangent_frame(towards, x, y);
   const Vec3d centre = .5 * (box.low + box.high);
   Grid grid;
-  for (const Vec3d& corner : corners_of(box)) grid.add(dot(corner - centre, x), dot(corner - centre, y));
+  for (const Vec3d& corner : corners_of(box)) grid.add(dot(corner, x), dot(corner, y));
   LightView view{.rays = {}, .measures = {}, .is_parallel = true};
-  const Vec3d outside = centre + towards * (2 * reach);
+  const Vec3d outside = towards * (dot(centre, towards) + 2 * reach);
   grid.for_each_pixel(spacing, [&](double u, double v, double area) {
     view.rays.emplace_back(Vec3f(outside + x * u + y * v), Vec3f(-towards));
     view.measures.push_back(float(area));
@@ -222,14 +233,14 @@ LightView parallel_view(const Bounds& box, const Vec3d& towards, double reach, d
 }
 
 LightView view_from(const Bounds& box, const Vec3d& position, double spacing) {
-  constexpr double kNear = .2;  // of the distance of the box's centre
+  constexpr double kNear = .2;  // times the distance of the box's centre
   const Vec3d centre = .5 * (box.low + box.high);
   const double distance = length(centre - position), radius = .5 * length(box.high - box.low);
   LightView view;
   Grid grid;
   bool is_in_front = distance > 0;
   if (is_in_front) {
-    const Vec3d forward = (centre - position) / distance;
+    const Vec3d forward = steady((centre - position) / distance);
     Vec3d x, y;
     tangent_frame(forward, x, y);
     for (const Vec3d& corner : corners_of(box)) {

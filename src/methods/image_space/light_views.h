@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views from lights: the points of a body met by each light first, which are the points where its light enters.
+// Views from lights: the points of a body reached by each light, where it enters.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ struct MediumResponse {
   SphereResponse ball;
   RgbF kept;        ///< contrast of detail
   RgbF total;       ///< exitance of a flat body over even transmitted irradiance
-  float width = 0;  ///< of the blur of details, world units; 0: none, light leaves where it enters
+  float width = 0;  ///< blur of details, world units; 0: none, light leaves where it enters
 };
 MediumResponse make_response(const Medium& medium, const World& world);
 
@@ -54,9 +54,9 @@ class PreintegratedField : public Field {
   struct Incident {
     std::uint32_t hit;
     Vec3f towards;
-    float distance;       // of the light
+    float distance;       // to the light
     RgbF irradiance;      // across the direction
-    float thickness = 0;  // of the body towards a light behind it; 0: the hit faces it
+    float thickness = 0;  // body along the ray to a light behind it; 0: the hit faces the light
   };
   Place smooth_at(const SurfacePoint& point, const Hit& hit) const;
   Place through(const SurfacePoint& point, const Place& place, const Vec3f& towards, float thickness) const;
@@ -73,7 +73,7 @@ class PreintegratedField : public Field {
   const RayScene& rays_;
   const World& world_;
   const MediumResponse& medium_;
-  std::vector<const SmoothSurface*> surfaces_;  // one per mesh of the world; null: of another body
+  std::vector<const SmoothSurface*> surfaces_;  // one per mesh of the world; null: in another body
   float eta_;
   int samples_per_pixel_;
 };
