@@ -97,8 +97,18 @@ struct ChosenProfile {
   friend bool operator==(const ChosenProfile&, const ChosenProfile&) = default;
 };
 
+/// Layer below the surface of a body, from the surface inwards.
+struct MediumLayer {
+  std::string medium;  ///< its name
+  PhysicalMedium coefficients;
+  double thickness = std::numeric_limits<double>::infinity();  ///< mm, >= 0; infinite in the last layer
+  std::optional<Texture> thickness_texture{};                  ///< factor of the thickness
+  friend bool operator==(const MediumLayer&, const MediumLayer&) = default;
+};
+
 struct Medium {
   std::string name;
+  /// With layers: the equivalent medium of radial profiles (diffusion/layered_medium.h).
   std::variant<PhysicalMedium, ArtistMedium> coefficients;
   double eta = 1.3;
   /// None, as in a scene file without one: chosen for each body.
@@ -125,6 +135,7 @@ struct Medium {
   ChosenProfile chosen{};                                      ///< if profile is none
   NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< for ProfileKind::normalized_diffusion
   Grain grain{};                                               ///< grain of the boundary
+  std::vector<MediumLayer> layers{};                           ///< empty: homogeneous, or by its textures
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
@@ -139,6 +150,8 @@ void for_each_textured(const Medium& medium, const Visit& visit) {
   visit(1.0, medium.radius_texture, SurfacePart::color);
   visit(medium.subsurface_weight, medium.weight_texture, SurfacePart::color);
   visit(medium.base_color, medium.base_texture, SurfacePart::color);
+  for (const MediumLayer& layer : medium.layers)
+    visit(layer.thickness, layer.thickness_texture, SurfacePart::color);
 }
 
 // ---- shapes ---------------------------------------------------------------------------------------------

@@ -103,10 +103,17 @@ double short_length_of(const Scene& scene, const World& world, const BodyPlan& g
   return lengths.empty() ? 0 : lengths[lengths.size() / 10];
 }
 
-MediaInside media_inside(const PrecomputeInput& input, const Body& body,
+MediaInside media_inside(const PrecomputeInput& input, const Body& body, CubeCentre centre,
                          std::function<HomogeneousMedium(const ReducedMedium&)> convert) {
   const Medium& medium = input.scene.media[body.plan.medium];
   if (!varies_inside(medium)) return {};
+  if (!medium.layers.empty())
+    return [media = std::make_shared<const LayeredMedia>(input.scene, input.world, medium, centre),
+            surface = NearestSurface(input.rays, body.plan.meshes),
+            convert = std::move(convert)](const Vec3d& position, double width) {
+      const std::array<ReducedMedium, 3> reduced = media->at(position, surface.at(position), float(width));
+      return std::array<HomogeneousMedium, 3>{convert(reduced[0]), convert(reduced[1]), convert(reduced[2])};
+    };
   return [media = std::make_shared<const LocalMedia>(input.scene, input.world, medium),
           surface = NearestSurface(input.rays, body.plan.meshes),
           convert = std::move(convert)](const Vec3d& position, double width) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bodies/body.h"
+#include "bodies/layered_media.h"
 #include "bodies/surface_textures.h"
 #include "diffusion/reduced_medium.h"
 #include "geometry/world.h"
@@ -49,10 +50,10 @@ class LocalMedia {
 /// Length to be resolved by the cells of a textured body: the 10th percentile over its surface, mm.
 double short_length_of(const Scene& scene, const World& world, const BodyPlan& group);
 
-/// Medium at points inside a body: the medium of the nearest surface point. Empty if the body's medium is
-/// homogeneous.
-/// in    input, body: outlive the result; convert: maps a reduced medium to the result's
-MediaInside media_inside(const PrecomputeInput& input, const Body& body,
+/// Medium at points inside a body: the medium of the nearest surface point, or its layer at this depth. Empty if
+/// the body's medium is homogeneous.
+/// in    input, body: outlive the result; centre: of the cubes, with layers; convert: maps a reduced medium to the result's
+MediaInside media_inside(const PrecomputeInput& input, const Body& body, CubeCentre centre,
                          std::function<HomogeneousMedium(const ReducedMedium&)> convert);
 
 }  // namespace opaline

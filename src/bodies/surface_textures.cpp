@@ -323,6 +323,16 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
 
 StageKey medium_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes) {
   if (!varies_inside(medium)) return {};
+  if (!medium.layers.empty()) {
+    KeyBuilder key("layers inside", 1);
+    key.add(medium.eta);
+    for (const MediumLayer& layer : medium.layers) {
+      key.add(layer.coefficients).add(layer.thickness);
+      if (layer.thickness_texture) add_to_key(key.add(std::string("thickness")), *layer.thickness_texture);
+    }
+    for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
+    return key.key();
+  }
   const auto& mean = std::get<ArtistMedium>(medium.coefficients);
   KeyBuilder key("medium inside", 3);
   key.add(mean.subsurface_color).add(mean.subsurface_radius).add(mean.anisotropy).add(medium.eta);

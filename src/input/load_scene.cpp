@@ -164,6 +164,9 @@ Scene read_scene(const Document& document) {
       for (std::string& warning : keys_without_effect(medium, scene.media.back()))
         scene.warnings.push_back(std::move(warning));
     }
+  if (const auto media = reader.find("media"))
+    for (std::size_t i = 0; i < scene.media.size(); ++i)
+      read_layers(media->members()[i], mm_per_unit, scene.media, scene.media[i]);
   ShapeContext context{mm_per_unit, &scene.media, {}};
   scene.shapes = read_named<Shape>(
       reader.find("shapes"), "shape",
@@ -361,7 +364,10 @@ Medium parse_medium(std::string_view text, const std::string& file) {
   document.root = parse_tree(document, text);
   replace_deprecated_spellings(document, document.root, "");
   document.root.key = "medium";
-  return read_medium(Value(document, document.root, document.root.key, key_info("scene", "media")), 1);
+  const Value value(document, document.root, document.root.key, key_info("scene", "media"));
+  Medium medium = read_medium(value, 1);
+  read_layers(value, 1, {}, medium);
+  return medium;
 }
 
 }  // namespace opaline

@@ -51,11 +51,21 @@ std::span<const MediumRow> medium_rows() {
           "factor of `subsurface_radius`"),
       row("medium", "subsurface_scatter_anisotropy", number, "", {-1, 1, true, true}, "0",
           "the same as `g`, with `subsurface_color`"),
+      row("medium", "layers", list, "", kFiniteNumber, "",
+          "layers of other media below the surface, from the surface inwards; the last one fills the rest. "
+          "`volume_diffusion` and `volume` have them by the depth below the nearest surface point; other "
+          "methods use a homogeneous medium of the same reflectance and width of scattering"),
+      row("medium.layer", "medium", text, "", kFiniteNumber, "",
+          "name of a homogeneous medium; its index of refraction is that of the layered medium"),
+      textured(
+          row("medium.layer", "thickness", number, "scene units", kNonNegative, "",
+              "thickness, of all layers but the last one; a texture's texels are multiplied by `scale`")),
       row("medium", "scatter_anisotropy", number, "", {-.95, .95}, "0",
           "the same for `volume` only, with `preset` or `sigma_s_prime`: sigma_s is sigma_s_prime / (1 - g); "
           "diffusion depends on `sigma_s_prime` only"),
       row("medium", "specular_ior", number, "", {.1, 10},
-          "the preset's (marble 1.5, all others 1.3), else 1.3", "index of refraction, inside over outside"),
+          "the preset's (marble 1.5, all others 1.3), the first layer's, else 1.3",
+          "index of refraction, inside over outside"),
       textured<&Medium::specular_roughness, &Medium::roughness_texture>(
           row("medium", "specular_roughness", number, "", kUnitInterval, "0",
               "roughness of the specular reflection: 0 smooth, 0.3 satin; only a rough surface shows "

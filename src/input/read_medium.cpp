@@ -26,6 +26,7 @@ const std::vector<Form>& forms() {
       {"preset", {"scatter_anisotropy"}},
       {"sigma_s_prime", {"sigma_a", "scatter_anisotropy"}},
       {"sigma_s", {"sigma_a", "g"}},
+      {"layers", {}},
       {"subsurface_color", {"subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy"}},
   };
   return table;
@@ -34,7 +35,8 @@ const std::vector<Form>& forms() {
 /// Decisive key of the medium's form. error if there is none, several, or a key of another form beside it
 std::string_view form_of(const ObjectReader& medium) {
   const std::string ways =
-      "preset, sigma_a + sigma_s_prime, sigma_a + sigma_s (+ g), or subsurface_color + subsurface_radius";
+      "preset, sigma_a + sigma_s_prime, sigma_a + sigma_s (+ g), subsurface_color + subsurface_radius, or "
+      "layers";
   const Form* form = nullptr;
   for (const Node& member : medium.node().children)
     for (const Form& f : forms()) {
@@ -162,6 +164,9 @@ Medium read_medium(const Value& value, double mm_per_unit) {
     const Preset& preset = preset_of(name);
     medium.coefficients = preset.coefficients;
     medium.eta = preset.eta;
+  } else if (form == "layers") {
+    medium.coefficients = PhysicalMedium{};
+    medium.layers.emplace_back();  // replaced by read_layers
   } else if (form == "subsurface_color") {
     medium.coefficients = read_artist(reader, medium);
   } else {

@@ -35,6 +35,9 @@ double weighted_ior(double ior, double weight);
 Grain read_grain(const ObjectReader& reader);
 
 Medium read_medium(const Value& value, double mm_per_unit);
+/// Reads the layers of a medium, after all media: their order is free. Also sets its equivalent coefficients.
+/// in    medium: with the key `layers`, otherwise unchanged
+void read_layers(const Value& value, double mm_per_unit, std::span<const Medium> media, Medium& medium);
 /// Warnings of keys for another profile than the medium's.
 std::vector<std::string> keys_without_effect(const Value& value, const Medium& medium);
 /// `name`: default name of the shape.

@@ -80,7 +80,14 @@ constexpr std::size_t kBytesOfBouncePlaces = 30'000'000;
 
 /// Text for a medium with textures that could vary inside a body; else empty.
 std::string medium_stage(const Medium& medium, Method method) {
-  if (varies_inside(medium) && method_of(method).follows_textures_inside(true))
+  const bool varies = varies_inside(medium), is_followed = method_of(method).follows_textures_inside(true);
+  if (!medium.layers.empty())
+    return fmt::format("{} layers{}", medium.layers.size(),
+                       is_followed
+                           ? " by the depth below the nearest surface point"
+                           : ": a homogeneous medium of the same reflectance and width of scattering; "
+                             "--method volume_diffusion has the layers");
+  if (varies && is_followed)
     return "textured medium: each point inside has the medium of the nearest surface point";
   const bool has_color = medium.texture_mix == TextureMix::medium && medium.tint_texture;
   if (!has_color && !medium.radius_texture) return {};

@@ -16,13 +16,13 @@ inline bool is_partly_opaque(const Medium& medium) {
   return medium.subsurface_weight < 1 || medium.weight_texture;
 }
 
-/// True if textures vary the medium's colour, or colour or radius, inside its bodies. Methods with a radial
+/// True if textures vary the medium's colour, or colour or radius, inside its bodies, or it has layers. Methods with a radial
 /// profile ignore this (SubsurfaceMethod::follows_textures_inside).
 inline bool has_color_inside(const Medium& medium) {
   return medium.texture_mix == TextureMix::medium && medium.tint_texture;
 }
 inline bool varies_inside(const Medium& medium) {
-  return has_color_inside(medium) || medium.radius_texture;
+  return has_color_inside(medium) || medium.radius_texture || !medium.layers.empty();
 }
 
 inline ProfileKind profile_kind(const Medium& medium) {

@@ -139,7 +139,7 @@ void choose_cells(const Scene& scene, const World& world, double fewest, BodyPla
   constexpr double kEasyFaces = .4;    // per sample of `fewest`; if there are fewer, cells are smaller
   const double length = group.smallest_mean_free_path;
   const Medium& medium = scene.media[group.medium];
-  group.cell = scene.settings.cell_size * (varies_inside(medium)
+  group.cell = scene.settings.cell_size * (varies_inside(medium) && medium.layers.empty()
                                                ? kOfVarying * short_length_of(scene, world, group)
                                                : std::min(length, kPerFading * shortest_fading(medium)));
   const double by_default = group.cell * Settings{}.cell_size / scene.settings.cell_size;

@@ -112,7 +112,9 @@ void DiffusionBody::find_media(const BodyMedia& media) {
       const DiffusionGrid::Cell& cell = grid_.cells()[i];
       const Vec3d centre = Vec3d(cell.centre) * lattice_.cell + lattice_.low;
       const std::array<HomogeneousMedium, 3> here = media.inside(centre, double(cell.size) * lattice_.cell);
-      for (std::size_t c = 0; c < 3; ++c) of_cells_[i][c] = calibrated(here[c], media.calibrations);
+      for (std::size_t c = 0; c < 3; ++c)
+        of_cells_[i][c] = media.calibrations.empty() ? CalibratedMedium(here[c], throughout_[0][c])
+                                                     : calibrated(here[c], media.calibrations);
     }
   });
 }

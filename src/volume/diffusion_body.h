@@ -22,7 +22,7 @@ Lattice lattice_around(const World& world, std::span<const std::uint32_t> meshes
 struct BodyMedia {
   std::array<std::array<CalibratedMedium, 3>, 1> throughout;
   MediaInside inside;                          ///< heterogeneous media; empty: homogeneous
-  std::vector<CalibratedMedium> calibrations;  ///< for heterogeneous media
+  std::vector<CalibratedMedium> calibrations;  ///< for heterogeneous media; empty: as `throughout`
 };
 
 /// Cells of one size at the surface. References `samples` and `media`.

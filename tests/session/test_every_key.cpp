@@ -45,6 +45,9 @@ const std::string kSlab =
 const std::string kRough = "media.stone.specular_roughness=0.5";
 const std::string kGloss = "shapes.floor.specular_roughness=0.4";
 const std::string kMap = R"(shapes.ball.normal_map={"texture": "cells.png"})";
+const std::array<std::string, 2> kLayers{
+    R"(media.flesh={"preset": "skin1"})",
+    R"(media.stone={"layers": [{"medium": "flesh", "thickness": 1}, {"medium": "wax"}]})"};
 const std::string kMesh = R"(shapes.ball={"name": "ball", "file": "bump.obj", "medium": "stone"})";
 const std::string kColoredMesh = R"(shapes.ball={"name": "ball", "file": "coloured.obj", "medium": "stone"})";
 
@@ -106,6 +109,21 @@ std::vector<Change> changes() {
       {"settings.method",
        "settings.method=volume_diffusion",
        {"media.wax.texture_mix=medium", R"(media.wax.subsurface_color={"texture": "cells.png"})"}},
+      {"medium.layers", kLayers[1], {kLayers[0]}},
+      {"medium.layers", kLayers[1], {cells[0], cells[1], kLayers[0]}},
+      {"medium.layer.medium", "media.stone.layers.0.medium=wax", {kLayers[0], kLayers[1]}},
+      {"medium.layer.medium",
+       "media.stone.layers.0.medium=wax",
+       {cells[0], cells[1], kLayers[0], kLayers[1]}},
+      {"medium.layer.thickness", "media.stone.layers.0.thickness=2", {kLayers[0], kLayers[1]}},
+      {"medium.layer.thickness",
+       R"(media.stone.layers.0.thickness={"texture": "other.png"})",
+       {cells[0], cells[1], kLayers[0], kLayers[1],
+        R"(media.stone.layers.0.thickness={"texture": "cells.png"})"}},
+      {"medium.layer.thickness",
+       R"(media.stone.layers.0.thickness={"texture": "other.png"})",
+       {volume[0], volume[1], volume[2], kLayers[0], kLayers[1],
+        R"(media.stone.layers.0.thickness={"texture": "cells.png"})"}},
       {"medium.thickness", "media.stone.thickness=3", {"media.stone.profile=multipole"}},
       {"medium.profile", "media.stone.profile=dipole"},
       {"medium.fit", "media.stone.fit=searchlight", {"media.stone.profile=normalized_diffusion"}},

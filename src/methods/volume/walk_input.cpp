@@ -69,8 +69,9 @@ VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span
   walks.seed = hash_bits(settings.seed, 3000);
   walks.monitor = input.monitor;
   walks.reenter = settings.reenter;
-  walks.media_inside = media_inside(
-      input, body, [g, least](const ReducedMedium& reduced) { return walked_medium(reduced, g, least); });
+  walks.media_inside = media_inside(input, body, CubeCentre::own, [g, least](const ReducedMedium& reduced) {
+    return walked_medium(reduced, g, least);
+  });
   return walks;
 }
 

@@ -44,7 +44,9 @@ std::array<HomogeneousMedium, 3> isotropic_media(const DiffuseProfile& profile) 
 /// in    body: with the samples of its cut surface; normals: of the same surface
 VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals) {
   const double cell = body.plan.cell / input.world.unit, least = cell / input.scene.settings.cell_size;
-  const auto resolved = [least](ReducedMedium reduced) {
+  const bool has_layers = !input.scene.media[body.plan.medium].layers.empty();
+  const auto resolved = [least, has_layers](ReducedMedium reduced) {
+    if (has_layers) return isotropic_medium(reduced);  // thin layers keep their optical thickness
     const double length = length_to_resolve(reduced.mean_free_path, reduced.absorbed);
     if (!(length > 0))
       reduced.mean_free_path = least / length_to_resolve(1, reduced.absorbed);
@@ -53,7 +55,8 @@ VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::
     return isotropic_medium(reduced);
   };
   return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, normals,
-                          isotropic_media(body.profile), cell, media_inside(input, body, resolved)});
+                          isotropic_media(body.profile), cell,
+                          media_inside(input, body, CubeCentre::inside, resolved), has_layers});
 }
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
