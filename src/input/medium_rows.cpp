@@ -55,10 +55,10 @@ std::span<const MediumRow> medium_rows() {
           "layers of other media below the surface, from the surface inwards; the last one fills the rest. "
           "`volume_diffusion` and `volume` have them by the depth below the nearest surface point; other "
           "methods use a homogeneous medium of the same reflectance and width of scattering"),
-      row("medium.layer", "medium", text, "", kFiniteNumber, "",
+      row("medium.layers", "medium", text, "", kFiniteNumber, "",
           "name of a homogeneous medium; its index of refraction is that of the layered medium"),
       textured(
-          row("medium.layer", "thickness", number, "scene units", kNonNegative, "",
+          row("medium.layers", "thickness", number, "scene units", kNonNegative, "",
               "thickness, of all layers but the last one; a texture's texels are multiplied by `scale`")),
       row("medium", "scatter_anisotropy", number, "", {-.95, .95}, "0",
           "the same for `volume` only, with `preset` or `sigma_s_prime`: sigma_s is sigma_s_prime / (1 - g); "

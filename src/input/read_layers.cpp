@@ -63,7 +63,7 @@ void read_layers(const Value& value, double mm_per_unit, std::span<const Medium>
   if (list.empty()) layers->fail("has no layer", "at least one");
   medium.layers.clear();
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const ObjectReader one(list[i], "medium.layer");
+    const ObjectReader one(list[i], "medium.layers");
     const Medium& own = medium_of(one.need("medium"), media, medium);
     MediumLayer& layer = medium.layers.emplace_back();
     layer.medium = own.name;
