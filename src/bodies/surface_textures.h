@@ -63,8 +63,9 @@ class SurfaceTextures {
   /// Unit tangent perpendicular to the shading normal, the direction of largest roughness of an anisotropic
   /// boundary; 0 for isotropic ones.
   Vec3f tangent(const Place& place, const SurfacePoint& point) const;
-  /// Bends the point's shading normal by the normal map and then the bump map, if present.
-  void bend(const Place& place, SurfacePoint& point) const;
+  /// Bends the point's shading normal by the normal map and then the bump map, if present. Returns the variance of
+  /// the normal map's slopes within the footprint, along each axis.
+  float bend(const Place& place, SurfacePoint& point) const;
 
  private:
   struct OfMesh {

@@ -22,6 +22,8 @@ class CachedPicture {
   virtual Texel mean() const = 0;
   /// As TextureFile::above_one.
   virtual TexelsAboveOne above_one(const Vec3d& scale) const = 0;
+  /// Width and height, texels.
+  virtual std::array<int, 2> resolution() const = 0;
   /// Presence of red, green, blue and alpha in the image.
   virtual std::array<bool, 4> channels() const = 0;
   virtual TextureMemory memory() const = 0;

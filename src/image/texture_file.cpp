@@ -193,6 +193,16 @@ std::array<float, 2> TextureFile::slope(const TexturePlace& place, std::size_t c
   return picture == nullptr ? std::array<float, 2>{} : picture->slope(within, channel);
 }
 
+float TextureFile::texels_across(TexturePlace place) const {
+  const CachedPicture* const picture = picture_at(place);
+  if (picture == nullptr) return 0;
+  const auto [width, height] = picture->resolution();
+  const auto texels = [&](const std::array<float, 2>& side) {
+    return std::hypot(side[0] * float(width), side[1] * float(height));
+  };
+  return std::max(texels(place.side_x), texels(place.side_y));
+}
+
 TexelsAboveOne TextureFile::above_one(const Vec3d& scale) const {
   TexelsAboveOne all;
   for (const auto& [tile, picture] : pictures_) {

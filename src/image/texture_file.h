@@ -76,6 +76,8 @@ class TextureFile {
   /// Derivatives of a channel of at() along the full image, to the right and down; smooth between texels.
   /// Thread-safe.
   std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const;
+  /// Length of the longer side of a footprint, texels of the full size.
+  float texels_across(TexturePlace place) const;
   /// Value of all texels, if it is constant.
   const std::optional<Texel>& constant() const { return constant_; }
   /// Float texels exceeding 1 after multiplication by `scale`, except small excesses left by filters. Reads

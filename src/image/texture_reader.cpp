@@ -184,6 +184,7 @@ class OiioPicture : public CachedPicture {
     channels_ = layout.channels;
     is_windowed_ = layout.is_windowed;
     for (std::size_t c = 0; c < 4; ++c) has_channel_[c] = layout.places[c] >= 0;
+    resolution_ = {spec.full_width, spec.full_height};
     const auto values = std::size_t(spec.image_pixels()) * std::size_t(spec.nchannels);
     const std::size_t full_size = values * colors_.type_for(spec.format).size();
     memory_ = {values * spec.format.size(), full_size * 4 / 3};
@@ -271,6 +272,7 @@ class OiioPicture : public CachedPicture {
     return above;
   }
 
+  std::array<int, 2> resolution() const override { return resolution_; }
   std::array<bool, 4> channels() const override { return has_channel_; }
   TextureMemory memory() const override { return memory_; }
   std::string warning() const override { return warning_; }
@@ -311,6 +313,7 @@ class OiioPicture : public CachedPicture {
   std::string warning_;
   int channels_ = 0;  // channels of a texel
   std::array<bool, 4> has_channel_{};
+  std::array<int, 2> resolution_{};
   bool is_windowed_ = false;
   TextureMemory memory_;
   std::string name_;

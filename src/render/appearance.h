@@ -19,6 +19,14 @@
 
 namespace opaline {
 
+/// Roughness with the slopes of facets that a normal map averages: alpha^2 + 2 variance, alpha = roughness^2.
+/// from  the best GGX for Gaussian slopes is within 5 % of it
+inline float filtered_roughness(float roughness, float slope_variance) {
+  if (!(slope_variance > 0)) return roughness;
+  const float alpha = roughness * roughness;
+  return std::min(1.f, std::sqrt(std::sqrt(alpha * alpha + 2 * slope_variance)));
+}
+
 struct Appearance {
   bool translucent = false;
   RgbF albedo{};                       ///< reflectance, or total diffuse reflectance
@@ -43,8 +51,10 @@ struct Appearance {
   Appearance at(const HitTextures& textures) const {
     Appearance here = *this;
     here.albedo = albedo * textures.tint.entering * textures.tint.leaving + textures.reflected;
-    if (roughnesses)
-      here.rough = roughnesses->at(textures.roughness.value_or(roughness), textures.tangent_share);
+    if (roughnesses) {
+      const float own = textures.roughness.value_or(roughness);
+      here.rough = roughnesses->at(filtered_roughness(own, textures.slope_variance), textures.tangent_share);
+    }
     if (textures.metalness) here.metalness = *textures.metalness;
     return here;
   }
@@ -88,12 +98,13 @@ struct Appearance {
   }
 };
 
+/// in    has_normals: a normal map, whose slopes within a pixel add to the roughness
 inline void roughen(Appearance& appearance, double roughness, const std::optional<Texture>& texture,
-                    const Grain& grain, double eta) {
+                    const Grain& grain, double eta, bool has_normals) {
   const float anisotropy = float(grain.anisotropy);
   appearance.roughness = float(roughness);
   appearance.roughness_texture = pointer_to(texture);
-  if (texture)
+  if (texture || (has_normals && roughness > 0))
     appearance.roughnesses = shared_roughness(eta, anisotropy);
   else if (roughness > 0 && anisotropy > 0)
     appearance.roughnesses = shared_roughness(eta, anisotropy, appearance.roughness);
@@ -110,7 +121,8 @@ inline Appearance opaque_appearance(const Shape& shape) {
   appearance.has_boundary = true;
   appearance.metalness = float(gloss.metalness);
   appearance.metalness_texture = pointer_to(gloss.metalness_texture);
-  roughen(appearance, gloss.roughness, gloss.roughness_texture, gloss.grain, gloss.eta);
+  roughen(appearance, gloss.roughness, gloss.roughness_texture, gloss.grain, gloss.eta,
+          shape.normal_map.has_value());
   return appearance;
 }
 
@@ -122,7 +134,8 @@ inline Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool f
   const DiffuseProfile profile = make_diffuse_profile(medium);
   Appearance appearance{true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), {},
                         true};
-  roughen(appearance, medium.specular_roughness, medium.roughness_texture, medium.grain, medium.eta);
+  roughen(appearance, medium.specular_roughness, medium.roughness_texture, medium.grain, medium.eta,
+          shape.normal_map.has_value());
   if (follows_light)
     appearance.exit = std::make_shared<const AngularExit>(reduced_absorption(medium), medium.eta);
   return appearance;

@@ -82,11 +82,13 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
     for (const Body& body : input.groups)
       for (const std::uint32_t mesh : body.plan.meshes)
         follows_light[mesh] = method_of(body.plan.method).follows_textures_inside(true);
-  std::map<std::pair<std::size_t, bool>, std::size_t> of_medium;  // the first shape
+  std::map<std::array<std::size_t, 3>, std::size_t> of_medium;  // the first shape
   for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
     const Shape& shape = input.scene.shapes[i];
     const auto known =
-        shape.medium ? of_medium.try_emplace({*shape.medium, follows_light[i]}, i).first : of_medium.end();
+        shape.medium
+            ? of_medium.try_emplace({*shape.medium, follows_light[i], shape.normal_map.has_value()}, i).first
+            : of_medium.end();
     appearances_.push_back(known != of_medium.end() && known->second < i
                                ? appearances_[known->second]
                                : mesh_appearance(input.scene, shape, follows_light[i]));
@@ -257,11 +259,12 @@ void Shader::add_textures(const RayBatch& batch, std::size_t ray, bool from_behi
                                                  footprint_of(point, traced.direction, width_at(batch, ray)));
   place.from_behind = from_behind;
   const Vec3f unbent = point.normal;
-  textures_.bend(place, point);
+  const float slope_variance = textures_.bend(place, point);
   const bool is_bent = point.normal != unbent;
   if (is_bent) keep_mirrored_outside(point, traced.direction);
   HitTextures here{textures_.tint(place), textures_.reflected(place)};
   appearances_[hit.mesh].look_up(place, here);
+  here.slope_variance = slope_variance;
   here.is_bent = is_bent;
   here.tangent = textures_.tangent(place, point);
   if (here.tangent != Vec3f{}) {

@@ -12,6 +12,7 @@ struct HitTextures {
   SurfaceTint tint;
   RgbF reflected{};                               ///< SurfaceTextures::reflected
   std::optional<float> roughness{}, metalness{};  ///< none: the surface's own
+  float slope_variance = 0;                       ///< SurfaceTextures::bend
   bool is_bent = false;                           ///< maps have turned the shading normal
   Vec3f tangent{};                                ///< SurfaceTextures::tangent
   float tangent_share = 0;                        ///< cos^2 of the view direction's azimuth from the tangent
