@@ -196,9 +196,9 @@ std::array<float, 2> TextureFile::slope(const TexturePlace& place, std::size_t c
 float TextureFile::texels_across(TexturePlace place) const {
   const CachedPicture* const picture = picture_at(place);
   if (picture == nullptr) return 0;
-  const auto [width, height] = picture->resolution();
+  const std::array<int, 2> resolution = picture->resolution();
   const auto texels = [&](const std::array<float, 2>& side) {
-    return std::hypot(side[0] * float(width), side[1] * float(height));
+    return std::hypot(side[0] * float(resolution[0]), side[1] * float(resolution[1]));
   };
   return std::max(texels(place.side_x), texels(place.side_y));
 }

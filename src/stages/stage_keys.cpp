@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/stage_keys.h"
 
+#include <variant>
+
 #include "bodies/surface_textures.h"
 #include "geometry/embree.h"
 #include "input/settings_table.h"
@@ -184,6 +186,13 @@ StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> tran
   if (tint != StageKey{}) key.add(tint);
   for (std::size_t l = 0; l < lights.size(); ++l) key.add(transfers[l]).add(emission(lights[l]));
   return key.key();
+}
+
+void add_profile(KeyBuilder& key, const Medium& medium) {
+  std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
+  key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(profile_kind(medium));
+  if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
+  if (profile_kind(medium) == ProfileKind::normalized_diffusion) key.add(profile_fit(medium));
 }
 
 StageKey walked_profile_key(double absorbed, double eta) {

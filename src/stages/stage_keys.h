@@ -54,6 +54,8 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> transfers,
                          std::span<const Light> lights, const StageKey& tint);
 
+/// Adds a medium's coefficients and radial profile.
+void add_profile(KeyBuilder& key, const Medium& medium);
 /// Cache key of the shape of a profile from random walks, in mean free paths.
 StageKey walked_profile_key(double absorbed, double eta);
 

@@ -104,10 +104,7 @@ void update_kernels(BodyStages& stages) {
   const Medium& medium = scene.media[body.plan.medium];
   const double spacing = body.surface.spacing();
   KeyBuilder key("kernel", kKernelVersion);
-  std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
-  key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(profile_kind(medium));
-  if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
-  if (profile_kind(medium) == ProfileKind::normalized_diffusion) key.add(profile_fit(medium));
+  add_profile(key, medium);
   key.add(spacing).add(world.diagonal).add(world.unit);
   key.add(settings_in_key(KeyedStage::kernel, scene)).add(near_irradiance(scene));
   stages.store.get(state_of<HierarchicalState>(stages.body).kernels, key.key(), [&] {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "bodies/surface_textures.h"
 #include "exitance/evaluate.h"
@@ -91,10 +90,7 @@ StageKey lit_key(const BodyStages& stages, double spacing) {
   const auto& [scene, world, rays, plan, monitor] = stages.input;
   const Medium& medium = scene.media[stages.body.plan.medium];
   KeyBuilder key("light views", kVersion);
-  std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
-  key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(profile_kind(medium));
-  if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
-  if (profile_kind(medium) == ProfileKind::normalized_diffusion) key.add(profile_fit(medium));
+  add_profile(key, medium);
   key.add(spacing).add(world.diagonal).add(world.unit);
   key.add(settings_in_key(KeyedStage::transfers, scene)).add(settings_in_key(KeyedStage::kernel, scene));
   for (const MeshKeys& mesh : stages.mesh_keys) key.add(mesh.all);
