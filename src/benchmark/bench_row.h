@@ -28,10 +28,10 @@ struct Spread {
 Spread spread_of(std::vector<double> values);
 
 /// Distinguished stages of a rendering.
-inline constexpr std::array<std::string_view, 11> kBenchStages{
-    "loading", "rays",    "sampling", "irradiance", "diffusion", "random walks",
-    "octree",  "bounces", "exitance", "shading",    "writing"};
-inline constexpr std::size_t kShadingStage = 9;
+inline constexpr std::array<std::string_view, 13> kBenchStages{
+    "loading", "rays",        "sampling",  "irradiance", "diffusion", "random walks", "octree",
+    "bounces", "light views", "curvature", "exitance",   "shading",   "writing"};
+inline constexpr std::size_t kShadingStage = 11;
 static_assert(kBenchStages[kShadingStage] == "shading");  // it and the later ones: again for each frame
 
 /// Kernel accounting. Kernels divide user and system time by ticks; their sum is exact.
