@@ -80,14 +80,8 @@ constexpr std::size_t kBytesOfBouncePlaces = 30'000'000;
 
 /// Text for a medium with textures that could vary inside a body; else empty.
 std::string medium_stage(const Medium& medium, Method method) {
-  const bool varies = varies_inside(medium), is_followed = method_of(method).follows_textures_inside(true);
-  if (!medium.layers.empty())
-    return fmt::format("{} layers{}", medium.layers.size(),
-                       is_followed
-                           ? " by the depth below the nearest surface point"
-                           : ": a homogeneous medium of the same reflectance and width of scattering; "
-                             "--method volume_diffusion has the layers");
-  if (varies && is_followed)
+  if (!medium.layers.empty()) return {};
+  if (varies_inside(medium) && method_of(method).follows_textures_inside(true))
     return "textured medium: each point inside has the medium of the nearest surface point";
   const bool has_color = medium.texture_mix == TextureMix::medium && medium.tint_texture;
   if (!has_color && !medium.radius_texture) return {};
@@ -96,6 +90,14 @@ std::string medium_stage(const Medium& medium, Method method) {
   if (has_color && medium.radius_texture) text += ", and ";
   if (medium.radius_texture) text += "mean radius";
   return text + "; --method volume_diffusion varies the medium inside";
+}
+
+std::string layers_stage(const Medium& medium, Method method) {
+  return fmt::format("{} layers{}", medium.layers.size(),
+                     method_of(method).follows_textures_inside(true)
+                         ? " by the depth below the nearest surface point"
+                         : ": a homogeneous medium of the same reflectance and width of scattering; --method "
+                           "volume_diffusion has the layers");
 }
 
 void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) {
@@ -117,6 +119,9 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
         plan.stages.push_back(group.name + ": " + text);
     for (const Method one : used) method_of(one).list_stages(scene, plan.stages);
   }
+  for (const BodyPlan& group : plan.groups)
+    if (const Medium& medium = scene.media[group.medium]; !medium.layers.empty())
+      plan.stages.push_back(group.name + ": " + layers_stage(medium, group.method));
   if (bounces_of(scene) > 0)
     plan.stages.push_back(method.bounces_stage());
   else if (scene.settings.method == Method::volume && shapes_exchange_light(scene))
