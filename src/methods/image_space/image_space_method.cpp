@@ -112,6 +112,11 @@ void ImageSpaceMethod::plan(const PlanningInput& input, BodyPlan& body,
 BodyMemory ImageSpaceMethod::memory(const PlanningInput& input, const BodyPlan& body) const {
   BodyMemory memory{.evaluated_samples = body.samples};
   memory.kept = std::size_t(kBytesOfSample * double(body.samples * input.lights.size()));
+  const Bounds box = bounds(input.world, body.meshes);
+  const Vec3d size = box.high - box.low;
+  const double spacing = body.spacing / input.world.unit,
+               pixels = 3 * (size.x * size.y + size.y * size.z + size.z * size.x) / (spacing * spacing);
+  memory.temporary = 1.5 * std::min(double(kMostPixelsOfView), pixels) * double(sizeof(Ray) + sizeof(float));
   return memory;
 }
 

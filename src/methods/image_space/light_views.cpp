@@ -17,7 +17,6 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kMostChannels = 3;  // lights sharing their rays
-constexpr double kMostAcross = 4096;      // pixels
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 using Weights = std::array<float, kMostChannels>;
@@ -54,9 +53,10 @@ struct Grid {
   }
   /// Calls use(u, v, area) at the middle of each pixel.
   template <class Use>
-  void for_each_pixel(double spacing, const Use& use) const {
-    const double widest = std::max(high_u - low_u, high_v - low_v);
-    const double side = stepped(std::max(spacing, widest / kMostAcross));
+  void for_each_pixel(double spacing, std::size_t most, const Use& use) const {
+    const double width = high_u - low_u, height = high_v - low_v;
+    const double side = stepped(std::max(
+        {spacing, 1.2 * std::sqrt(width * height / double(most)), std::max(width, height) / double(most)}));
     const double first_u = std::floor(low_u / side), first_v = std::floor(low_v / side);
     for (double row = first_v; row * side < high_v; ++row)
       for (double column = first_u; column * side < high_u; ++column)
@@ -72,10 +72,10 @@ Vec3d steady(const Vec3d& direction) {
 }
 
 void add_perspective(const Vec3d& position, const Vec3d& forward, const Grid& grid, double spacing,
-                     LightView& view) {
+                     std::size_t most, LightView& view) {
   Vec3d x, y;
   tangent_frame(forward, x, y);
-  grid.for_each_pixel(spacing, [&](double u, double v, double area) {
+  grid.for_each_pixel(spacing, most, [&](double u, double v, double area) {
     const double length2 = 1 + u * u + v * v, length = std::sqrt(length2);
     view.rays.emplace_back(Vec3f(position), Vec3f((forward + x * u + y * v) / length));
     view.measures.push_back(float(area / (length2 * length)));
@@ -225,7 +225,7 @@ LightView parallel_view(const Bounds& box, const Vec3d& towards, double reach, d
   for (const Vec3d& corner : corners_of(box)) grid.add(dot(corner, x), dot(corner, y));
   LightView view{.rays = {}, .measures = {}, .is_parallel = true};
   const Vec3d outside = towards * (dot(centre, towards) + 2 * reach);
-  grid.for_each_pixel(spacing, [&](double u, double v, double area) {
+  grid.for_each_pixel(spacing, kMostPixelsOfView, [&](double u, double v, double area) {
     view.rays.emplace_back(Vec3f(outside + x * u + y * v), Vec3f(-towards));
     view.measures.push_back(float(area));
   });
@@ -249,14 +249,15 @@ LightView view_from(const Bounds& box, const Vec3d& position, double spacing) {
       is_in_front = is_in_front && depth > kNear * distance;
       if (is_in_front) grid.add(dot(to, x) / depth, dot(to, y) / depth);
     }
-    if (is_in_front) add_perspective(position, forward, grid, spacing / distance, view);
+    if (is_in_front) add_perspective(position, forward, grid, spacing / distance, kMostPixelsOfView, view);
   }
   if (is_in_front) return view;
   grid = {-1, 1, -1, 1};
   for (int side = 0; side < 6; ++side) {
     Vec3d forward{};
     forward[std::size_t(side / 2)] = side % 2 == 0 ? 1 : -1;
-    add_perspective(position, forward, grid, spacing / std::max(distance, .5 * radius), view);
+    add_perspective(position, forward, grid, spacing / std::max(distance, .5 * radius), kMostPixelsOfView / 6,
+                    view);
   }
   return view;
 }

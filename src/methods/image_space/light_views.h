@@ -14,6 +14,9 @@
 
 namespace opaline {
 
+/// Most pixels of a view, about; a box around a sparse body may need more at the spacing.
+inline constexpr std::size_t kMostPixelsOfView = 1 << 20;
+
 /// Flux transmitted at the pixels of views from all lights, with area = distance^2 x solid angle / cosine.
 /// One view for a light without an area; several from points on it or, for an environment, directions of it.
 /// in    input: scene, world and rays; spacing: of the points of one light, world units
