@@ -27,7 +27,8 @@ double seconds_of_bounces(const Scene& scene, const Plan& plan, const Lighting& 
   const double pixels = std::pow(std::max(1., std::max(width, height) / kAcross), 2);  // per place
   double rays = width * height / pixels * std::clamp(3 * pixels, 48., 192.) * kHits;
   for (const BodyPlan& group : plan.groups)
-    rays += double(group.samples) * method_of(group.method).gathered_rays();
+    if (const SubsurfaceMethod& method = method_of(group.method); method.needs_samples())
+      rays += double(group.samples) * method.gathered_rays();
   return rays * seconds_of_hit(lighting);
 }
 
