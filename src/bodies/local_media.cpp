@@ -107,19 +107,20 @@ MediaInside media_inside(const PrecomputeInput& input, const Body& body, CubeCen
                          std::function<HomogeneousMedium(const ReducedMedium&)> convert) {
   const Medium& medium = input.scene.media[body.plan.medium];
   if (!varies_inside(medium)) return {};
-  if (!medium.layers.empty())
-    return [media = std::make_shared<const LayeredMedia>(input.scene, input.world, medium, centre),
-            surface = NearestSurface(input.rays, body.plan.meshes),
-            convert = std::move(convert)](const Vec3d& position, double width) {
-      const std::array<ReducedMedium, 3> reduced = media->at(position, surface.at(position), float(width));
-      return std::array<HomogeneousMedium, 3>{convert(reduced[0]), convert(reduced[1]), convert(reduced[2])};
+  std::function<std::array<ReducedMedium, 3>(const Vec3d&, const NearestSurface::Place&, float)> below;
+  if (medium.layers.empty())
+    below = [media = std::make_shared<const LocalMedia>(input.scene, input.world, medium)](
+                const Vec3d&, const NearestSurface::Place& place, float width) {
+      return media->at(place.mesh, place.triangle, place.u, place.v, width);
     };
-  return [media = std::make_shared<const LocalMedia>(input.scene, input.world, medium),
-          surface = NearestSurface(input.rays, body.plan.meshes),
+  else
+    below = [media = std::make_shared<const LayeredMedia>(input.scene, input.world, medium, centre)](
+                const Vec3d& position, const NearestSurface::Place& place, float width) {
+      return media->at(position, place, width);
+    };
+  return [below = std::move(below), surface = NearestSurface(input.rays, body.plan.meshes),
           convert = std::move(convert)](const Vec3d& position, double width) {
-    const NearestSurface::Place place = surface.at(position);
-    const std::array<ReducedMedium, 3> reduced =
-        media->at(place.mesh, place.triangle, place.u, place.v, float(width));
+    const std::array<ReducedMedium, 3> reduced = below(position, surface.at(position), float(width));
     return std::array<HomogeneousMedium, 3>{convert(reduced[0]), convert(reduced[1]), convert(reduced[2])};
   };
 }

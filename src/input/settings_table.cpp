@@ -203,8 +203,9 @@ std::span<const Member<Settings>> settings_members() {
           "diffuse reflection, usually fastest; `\"direct\"`: the same BSSRDF by unbiased Monte Carlo "
           "sampling, slow and noisy; `\"volume\"`: random walks inside the bodies, slow and noisy, the "
           "reference; `\"volume_diffusion\"`: the diffusion equation solved inside the bodies, close to the "
-          "reference; `\"preintegrated\"`: each hit as on a ball of the local curvature, at about twice the "
-          "cost of `\"lambert\"`, for objects in motion; `\"image_space\"`: `\"hierarchical\"` with samples "
+          "reference; `\"preintegrated\"`: each hit as on a ball of the local curvature, at less than twice "
+          "the cost of `\"lambert\"`, for objects in motion; `\"image_space\"`: `\"hierarchical\"` with "
+          "samples "
           "seen from the lights, for objects in motion"),
       member<&Settings::evaluator>(
           "evaluator", choice, "", kFiniteNumber, "", {exitance, surfaces},

@@ -120,5 +120,20 @@ TEST(Preintegrated, Furnace) {
   }
 }
 
+// Claim: another profile of an artist's medium is noticed, as its colour then is another medium. Source: a new session. Fails if: the
+// key of the tables has the colour and radius alone.
+TEST(Preintegrated, NoticesTheProfile) {
+  Scene scene = single_shape(SphereShape{{}, 5}, marble(), 100);
+  scene.media[0].coefficients = ArtistMedium{Rgb(.6), Rgb(1)};
+  scene.lights = {point_light({20, 30, 60}, Rgb(1e4))};
+  scene.settings.method = Method::preintegrated;
+  Session session;
+  const Image before = picture_of(session, scene);
+  scene.media[0].profile = ProfileKind::normalized_diffusion;
+  const Image edited = picture_of(session, scene);
+  EXPECT_TRUE(same_pixels(edited, cold_picture(scene)));
+  EXPECT_FALSE(same_pixels(edited, before));
+}
+
 }  // namespace
 }  // namespace opaline::test

@@ -3,7 +3,6 @@
 
 #include <map>
 #include <mutex>
-#include <variant>
 
 #include "methods/preintegrated/preintegrated_field.h"
 
@@ -14,8 +13,7 @@ constexpr std::uint64_t kVersion = 1;
 
 StageKey response_key(const Medium& medium, const World& world) {
   KeyBuilder key("response of balls", kVersion);
-  std::visit([&](const auto& coefficients) { key.add(coefficients); }, medium.coefficients);
-  key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta);
+  add_profile(key, medium);  // a colour and radius are another medium under another profile
   return key.add(world.diagonal).add(world.unit).key();
 }
 
