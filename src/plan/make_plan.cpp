@@ -75,8 +75,13 @@ void check_bounces(const Scene& scene) {
       "--set settings.bounces=0, or --method volume_diffusion");
 }
 
-// Memory of the points gathering bounced light, and of more in corners; bench_plan.
-constexpr std::size_t kBytesOfBouncePlaces = 30'000'000;
+/// Memory of the image's points gathering bounced light, more of them in corners; bench_plan. Methods that
+/// trace paths instead have none.
+std::size_t bytes_of_bounce_places(const Scene& scene, std::size_t seen) {
+  constexpr std::size_t kRaysOfThreads = 8'000'000, kPlaces = 22'000'000, kPixel = 300;
+  const bool has_places = bounces_of(scene) > 0 && method_of(scene.settings.method).separates_lights();
+  return has_places ? kRaysOfThreads + std::min(kPlaces, kPixel * seen) : 0;
+}
 
 /// Text for a medium with textures that could vary inside a body; else empty.
 std::string medium_stage(const Medium& medium, Method method) {
@@ -274,7 +279,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   // with about as many points as pixels at its finest level, and surface caches, finer at higher resolution.
   plan.bytes += std::min(60 * seen, 500 * samples);
   if (samples > 0 && scene.film.samples_per_pixel > 1) plan.bytes += 5'000'000;
-  if (bounces_of(scene) > 0) plan.bytes += kBytesOfBouncePlaces;
+  plan.bytes += bytes_of_bounce_places(scene, seen);
   plan.bytes += std::size_t(temporary);
   plan.rays = cheaper_build(scene, lights, plan);
   list_stages(scene, lights, plan);

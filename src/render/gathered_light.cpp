@@ -13,6 +13,9 @@ namespace {
 
 using Met = HeldView::Gathered::Met;
 
+// Limits the memory of a thread, to about 6 MB; bench_plan.
+constexpr std::size_t kMostRaysAtOnce = 24 * kGatheredAtOnce;
+
 // Rays sampled at a few points, in order, and those of them with hits.
 struct Rays {
   std::vector<TracedRay> rays;
@@ -100,11 +103,13 @@ void use_all(const GatherInput& input, std::size_t begin, std::span<const Traced
 }  // namespace
 
 void for_each_gathered(const GatherInput& input, const UseOfGathered& use) {
-  const std::size_t parts = (input.points.size() + kGatheredAtOnce - 1) / kGatheredAtOnce;
+  const std::size_t points_at_once =
+      std::clamp<std::size_t>(kMostRaysAtOnce / std::size_t(input.rays_each), 1, kGatheredAtOnce);
+  const std::size_t parts = (input.points.size() + points_at_once - 1) / points_at_once;
   if (input.held != nullptr) input.held->parts.resize(parts);
   for (std::size_t part = 0; part < parts; ++part) {
-    const std::size_t begin = part * kGatheredAtOnce,
-                      end = std::min(begin + kGatheredAtOnce, input.points.size());
+    const std::size_t begin = part * points_at_once,
+                      end = std::min(begin + points_at_once, input.points.size());
     HeldView::Gathered* const held = input.held != nullptr ? &input.held->parts[part] : nullptr;
     if (held != nullptr && held->is_traced) {
       use_all(input, begin, rays_again(input, begin, held->met), held->met, &held->seen, use);

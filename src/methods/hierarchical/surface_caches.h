@@ -14,9 +14,9 @@ namespace opaline {
 /// (bench_plan). Surfaces exceeding it, such as needles cut into squares of the near field's size, are
 /// evaluated at the image's points.
 std::size_t most_wanted_places(const BodyPlan& group, const World& world);
-inline constexpr std::size_t kBytesOfPlace = 250;
+inline constexpr std::size_t kBytesOfPlace = 235;
 /// Expected points of such a cache, at most most_wanted_places.
-std::size_t expected_cache_places(const BodyPlan& group, const World& world);
+std::size_t expected_cache_places(const Scene& scene, const BodyPlan& group, const World& world);
 
 /// Maximum points of a surface cache, one per body of the plan: most_wanted_places if the settings request a
 /// cache, 0 if they request another evaluator, otherwise a fraction of the body's visible points times the
