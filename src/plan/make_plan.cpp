@@ -75,8 +75,8 @@ void check_bounces(const Scene& scene) {
       "--set settings.bounces=0, or --method volume_diffusion");
 }
 
-/// Memory of the image's points gathering bounced light, more of them in corners; bench_plan. Methods that
-/// trace paths instead have none.
+/// Memory of the image's points gathering bounced light, more of them in corners; bench_plan. None for
+/// methods tracing paths instead.
 std::size_t bytes_of_bounce_places(const Scene& scene, std::size_t seen) {
   constexpr std::size_t kRaysOfThreads = 8'000'000, kPlaces = 22'000'000, kPixel = 300;
   const bool has_places = bounces_of(scene) > 0 && method_of(scene.settings.method).separates_lights();
