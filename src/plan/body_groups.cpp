@@ -16,8 +16,8 @@ namespace opaline {
 namespace {
 
 /// 0: of no channel scattering is it longer.
-double smallest_mean_free_path(const DiffuseProfile& profile) {
-  double smallest = INFINITY;
+double smallest_mean_free_path(const DiffuseProfile& profile, const Medium& medium) {
+  double smallest = medium.densest > 0 ? medium.densest : INFINITY;
   for (std::size_t c = 0; c < 3; ++c)
     if (profile.total[c] > 0 && profile.mean_free_path[c] > 0)
       smallest = std::min(smallest, profile.mean_free_path[c]);
@@ -86,12 +86,13 @@ std::vector<BodyPlan> find_groups(const Scene& scene, const World& world,
     if (!shape.group.empty())
       it = std::ranges::find_if(groups, [&](const BodyPlan& g) { return g.shared && g.name == name; });
     if (it == groups.end()) {
-      groups.push_back({.name = name,
-                        .shared = !shape.group.empty(),
-                        .meshes = {},
-                        .medium = *shape.medium,
-                        .smallest_mean_free_path = smallest_mean_free_path(profile),
-                        .reason = {}});
+      groups.push_back(
+          {.name = name,
+           .shared = !shape.group.empty(),
+           .meshes = {},
+           .medium = *shape.medium,
+           .smallest_mean_free_path = smallest_mean_free_path(profile, scene.media[*shape.medium]),
+           .reason = {}});
       it = groups.end() - 1;
     }
     it->meshes.push_back(std::uint32_t(i));

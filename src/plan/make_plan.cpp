@@ -133,6 +133,11 @@ void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) 
     plan.stages.push_back("no light between shapes; other methods leave it out with settings.bounces=0");
   else if (std::ranges::any_of(plan.groups, [&](const BodyPlan& body) { return gathers_light(scene, body); }))
     plan.stages.push_back("re-entry: light leaving the body, gathered at its samples");
+  if (scene.wavelengths)
+    plan.stages.push_back(scene.other_wavelengths.empty()
+                              ? "spectra: 3 wavelengths in place of red, green and blue"
+                              : fmt::format("spectra: {} wavelengths, three at a time",
+                                            3 * (1 + scene.other_wavelengths.size())));
   if (used.empty()) used.push_back(scene.settings.method);
   std::ranges::sort(used, std::greater());
   std::string shading;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <variant>
 
 #include "diffusion/diffuse_profile.h"
@@ -57,6 +58,20 @@ void warn_of_open_mesh(const Scene& scene, const BodyPlan& body, std::vector<std
                                   : "close the mesh (fill_holes)"));
 }
 
+/// Sum of a body's projections along the axes, over its area: 1 along the axes, 1.5 of a sphere.
+double projected_area(const World& world, const BodyPlan& body) {
+  double projected = 0, area = 0;
+  for (const std::uint32_t m : body.meshes) {
+    const Mesh& mesh = world.meshes[m];
+    for (const auto& [i, j, k] : mesh.triangles) {
+      const Vec3d n = cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i]);
+      projected += std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+      area += length(n);
+    }
+  }
+  return area > 0 ? projected / area : 1;
+}
+
 /// CPU seconds to trace the light transmitted at a sample from one direction.
 double seconds_of_entry(const Medium& medium, const BodyPlan& body) {
   constexpr double kEntry = 8e-7;        // per direction of incident light at a sample
@@ -92,12 +107,15 @@ BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyP
   constexpr double kVaryingCell = 350;  // its own medium, and the flux to each neighbour
   const double in_wires =
       body.thickness > 0 ? 1.2 * needle_fraction(input.world, body) * body.cell / body.thickness : 0;
+  // Cells that cut a surface are as many as its projections along the axes have; fitted to spheres.
+  constexpr double kProjectedOfSphere = 1.5;
+  const double of_sphere = projected_area(input.world, body) / kProjectedOfSphere;
   BodyMemory memory;
   memory.kept +=
-      std::size_t(std::max(1., in_wires) * double(body.samples)) *
+      std::size_t(std::max(of_sphere, in_wires) * double(body.samples)) *
       (kCutSample + kLight * input.lights.size() + (gathers_light(input.scene, body) ? kBounces : 0));
   memory.kept += std::size_t((kBytesOfCell + (varies(input.scene, body) ? kVaryingCell : 0)) *
-                             expected_cells(body.area, body.thickness, body.cell));
+                             expected_cells(body.area, body.thickness, body.cell) * of_sphere);
   return memory;
 }
 
