@@ -50,6 +50,22 @@ inline Transform compose(const Transform& second, const Transform& first) {
 
 // ---- textures -------------------------------------------------------------------------------------------
 
+/// Wavelengths rendered as the channels of an image, instead of red, green and blue.
+struct ThreeWavelengths {
+  std::array<std::array<double, 2>, 3> bands{};  ///< ends, nm, equal for a wavelength; red first
+  /// Linear Rec.709 of a channel's value 1, white D65. Those of all groups sum to 1.
+  std::array<Rgb, 3> to_rgb{};
+  std::array<Rgb, 3> alone{};     ///< the same for an image of these wavelengths only
+  std::array<Rgb, 3> from_rgb{};  ///< a channel's value for red, green and blue
+  friend bool operator==(const ThreeWavelengths&, const ThreeWavelengths&) = default;
+};
+
+/// Values of a colour in red, green and blue at wavelengths; out of [0, 1] for a saturated one.
+/// in    from_rgb: ThreeWavelengths::from_rgb
+inline Rgb at_wavelengths(const std::array<Rgb, 3>& from_rgb, const Rgb& color) {
+  return {dot(from_rgb[0], color), dot(from_rgb[1], color), dot(from_rgb[2], color)};
+}
+
 class TextureFile;
 /// An image replacing a constant, mapped by the mesh's UVs.
 struct Texture {
@@ -61,9 +77,16 @@ struct Texture {
   std::array<double, 2> uv_offset{0, 0}, uv_scale{1, 1};
   double uv_rotation = 0;
   bool is_relative = false;  ///< scaled to a mean of 1: its texels may exceed 1, unlike other colours
+  /// ThreeWavelengths::from_rgb, applied to its colours before `scale`; none: red, green and blue.
+  std::optional<std::array<Rgb, 3>> from_rgb{};
   SourcePlace place{};
   friend bool operator==(const Texture&, const Texture&) = default;
 };
+
+/// A colour of a texture's file at the wavelengths of its scene, before Texture::scale.
+inline Rgb at_wavelengths(const Texture& texture, const Rgb& color) {
+  return texture.from_rgb ? at_wavelengths(*texture.from_rgb, color) : color;
+}
 
 /// An anisotropic boundary, with different roughness along and across a tangent: the direction of u, or
 /// without UVs the horizontal one, perpendicular to +y.
@@ -136,6 +159,7 @@ struct Medium {
   NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< for ProfileKind::normalized_diffusion
   Grain grain{};                                               ///< grain of the boundary
   std::vector<MediumLayer> layers{};                           ///< empty: homogeneous, or by its textures
+  double densest = 0;  ///< smallest mean free path of all wavelengths, mm; 0: that of these coefficients
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
@@ -352,6 +376,7 @@ struct Film {
   double exposure = 0;   ///< stops, for PNG only
   ViewTransform view = ViewTransform::soft;                 ///< for PNG only
   FilmColorSpace color_space = FilmColorSpace::lin_rec709;  ///< for EXR only
+  std::optional<int> wavelengths{};  ///< number of wavelengths; none: as few as the spectra allow
   friend bool operator==(const Film&, const Film&) = default;
 };
 
@@ -404,6 +429,9 @@ struct Scene {
   /// Frames from the first key of the camera or film to the last, if nothing else is keyed: images of the
   /// same surfaces under the same light; otherwise 1.
   std::size_t camera_frames = 1;
+  /// Wavelengths of its colours, and the same scene at the others. None: red, green and blue.
+  std::optional<ThreeWavelengths> wavelengths{};
+  std::vector<Scene> other_wavelengths{};
   friend bool operator==(const Scene&, const Scene&) = default;
 };
 

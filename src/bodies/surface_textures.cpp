@@ -42,7 +42,11 @@ std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Pl
 }
 
 RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
-  const std::array<float, 4> texel = looked_up(texture, place);
+  std::array<float, 4> texel = looked_up(texture, place);
+  if (texture.from_rgb) {
+    const Rgb mixed = at_wavelengths(texture, {double(texel[0]), double(texel[1]), double(texel[2])});
+    for (std::size_t c = 0; c < 3; ++c) texel[c] = float(mixed[c]);
+  }
   RgbF color;
   for (std::size_t c = 0; c < 3; ++c) {
     const float value = std::max(0.0f, texel[c]) * float(texture.scale[c]);
@@ -166,7 +170,8 @@ bool follows_textures_of(const Scene& scene, const World& world, std::size_t sha
 
 }  // namespace
 
-SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world) : world_(world) {
+SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world)
+    : world_(world), wavelengths_(scene.wavelengths) {
   for (std::size_t m = 0; m < scene.shapes.size(); ++m) {
     const Shape& shape = scene.shapes[m];
     OfMesh& own = of_mesh_.emplace_back();
@@ -218,7 +223,11 @@ SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t 
   place.on_whole_face = of_mesh_[mesh].has_whole_faces;
   if (of_mesh_[mesh].has_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
   if (of_mesh_[mesh].has_tangents) place.tangent = surface_tangent(world_.meshes[mesh], triangle, u, v);
-  if (of_mesh_[mesh].has_colors) place.color = surface_color(world_.meshes[mesh], triangle, u, v);
+  if (of_mesh_[mesh].has_colors) {
+    place.color = surface_color(world_.meshes[mesh], triangle, u, v);
+    if (wavelengths_)
+      place.color = RgbF(component_max(at_wavelengths(wavelengths_->from_rgb, Rgb(place.color)), Rgb{}));
+  }
   return place;
 }
 
@@ -312,7 +321,15 @@ void add_to_key(KeyBuilder& key, const Texture& texture) {
       .add(texture.scale)
       .add(std::uint64_t(texture.channel))
       .add(texture.is_relative);
+  if (texture.from_rgb)
+    for (const Rgb& row : *texture.from_rgb) key.add(row);
   key.add(texture.uv_offset).add(texture.uv_scale).add(texture.uv_rotation);
+}
+
+void add_vertex_colors(KeyBuilder& key, const Scene& scene, const Mesh& mesh) {
+  key.add_array(std::span(mesh.colors));
+  if (scene.wavelengths)
+    for (const Rgb& row : scene.wavelengths->from_rgb) key.add(row);
 }
 
 StageKey tint_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes,
@@ -330,7 +347,7 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
   key.add(samples).add(medium.tint).add(medium.texture_mix);
   for (const std::uint32_t m : meshes)
     if (has_colors(m))
-      key.add(std::string("vertex colours")).add(m).add_array(std::span(world.meshes[m].colors));
+      add_vertex_colors(key.add(std::string("vertex colours")).add(m), scene, world.meshes[m]);
   if (!has_texture && !medium.weight_texture) return key.key();
   if (has_texture) add_to_key(key, *medium.tint_texture);
   if (medium.weight_texture) add_to_key(key.add(std::string("weight")), *medium.weight_texture);

@@ -80,6 +80,7 @@ class SurfaceTextures {
 
   const World& world_;
   std::vector<OfMesh> of_mesh_;
+  std::optional<ThreeWavelengths> wavelengths_;
   bool is_empty_ = true;
 };
 
@@ -101,6 +102,8 @@ std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<cons
 
 /// Adds a scene's texture to a key: its file's contents and mapping; with the UVs of some meshes.
 void add_to_key(KeyBuilder& key, const Texture& texture);
+/// A mesh's vertex colours, at the wavelengths of the scene.
+void add_vertex_colors(KeyBuilder& key, const Scene& scene, const Mesh& mesh);
 /// A mesh's UVs and tangents.
 void add_coordinates(KeyBuilder& key, const Mesh& mesh);
 /// Cache key of a body's entering_tints; zero if there are none.

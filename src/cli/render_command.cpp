@@ -33,6 +33,7 @@
 #include "scene/names.h"
 #include "session/scene_hash.h"
 #include "session/session_records.h"
+#include "session/spectral_image.h"
 #include "subsurface/method.h"
 #include "volume/volume_diffusion.h"
 
@@ -270,8 +271,11 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
   Shading shading;
   const RayScene::Statistics before = session.rays().statistics();
   shading.picture = stages.run("shading", [&] {
-    if (session.scene().settings.method != Method::direct) return session.render(&stages.monitor());
+    const Scene& scene = session.scene();
+    if (scene.settings.method != Method::direct || !scene.other_wavelengths.empty())
+      return session.render(&stages.monitor());
     shading.direct = shade_direct(arguments, session, stages.monitor());
+    if (scene.wavelengths) convert_to_rgb(shading.direct->picture.image, scene.wavelengths->to_rgb);
     return std::move(shading.direct->picture);
   });
   const RayScene::Statistics after = session.rays().statistics();

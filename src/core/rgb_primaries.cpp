@@ -50,4 +50,8 @@ ColorMatrix color_matrix(const RgbPrimaries& from, const RgbPrimaries& to) {
   return product(inverse(to_xyz(to)), adapted);
 }
 
+ColorMatrix xyz_to_rgb(const RgbPrimaries& space) {
+  return inverse(to_xyz(space));
+}
+
 }  // namespace opaline

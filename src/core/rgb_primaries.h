@@ -25,6 +25,9 @@ using ColorMatrix = std::array<Vec3d, 3>;
 /// from  SMPTE RP 177 (RGB to XYZ); Lam 1985
 ColorMatrix color_matrix(const RgbPrimaries& from, const RgbPrimaries& to);
 
+/// Conversion of XYZ to linear colours of a space, without adaptation of white.
+ColorMatrix xyz_to_rgb(const RgbPrimaries& space);
+
 inline Vec3d operator*(const ColorMatrix& m, const Vec3d& color) {
   return {dot(m[0], color), dot(m[1], color), dot(m[2], color)};
 }

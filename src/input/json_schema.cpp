@@ -93,6 +93,7 @@ Json property(const KeyInfo& info) {
   }
   std::vector<Json> values = plain_values(info);
   if (info.may_be_texture) values.push_back(reference("texture"));
+  if (may_be_spectrum(info)) values.push_back(reference("spectrum"));
   if (info.type != ValueType::object && info.section != "scene") values.push_back(reference("keyed"));
   json["anyOf"] = values;
   return json;

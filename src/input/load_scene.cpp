@@ -12,6 +12,7 @@
 
 #include "assets/import_asset.h"
 #include "core/input_file.h"
+#include "diffusion/diffuse_profile.h"
 #include "geometry/world.h"
 #include "image/texture_file.h"
 #include "input/deprecated_spellings.h"
@@ -19,9 +20,11 @@
 #include "input/keyed_values.h"
 #include "input/overrides.h"
 #include "input/readers.h"
+#include "input/spectral_values.h"
 #include "lights/environment_picture.h"
 #include "scene/scene_properties.h"
 #include "scene/unread_format.h"
+#include "spectra/wavelengths.h"
 #include "values/nearest_name.h"
 
 namespace opaline {
@@ -183,6 +186,38 @@ Scene read_scene(const Document& document) {
   return scene;
 }
 
+double smallest_mean_free_path(Medium medium) {
+  medium.profile = ProfileKind::dipole;
+  double smallest = std::numeric_limits<double>::infinity();
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  for (std::size_t c = 0; c < 3; ++c)
+    if (profile.mean_free_path[c] > 0) smallest = std::min(smallest, double(profile.mean_free_path[c]));
+  return smallest;
+}
+
+/// A scene with spectra is read once for each group of wavelengths.
+Scene read_at_wavelengths(const Document& document) {
+  const std::optional<int> count = wavelengths_of(document);
+  if (!count) return read_scene(document);
+  std::vector<Scene> scenes;
+  for (const ThreeWavelengths& wavelengths : groups_of(spectral_rule(*count))) {
+    Document resolved = document;
+    resolve_spectra(resolved, wavelengths);
+    resolved.wavelengths = &wavelengths;
+    scenes.push_back(read_scene(resolved));
+    scenes.back().wavelengths = wavelengths;
+  }
+  for (std::size_t m = 0; m < scenes[0].media.size(); ++m) {
+    double densest = std::numeric_limits<double>::infinity();
+    for (const Scene& scene : scenes) densest = std::min(densest, smallest_mean_free_path(scene.media[m]));
+    for (Scene& scene : scenes) scene.media[m].densest = std::isfinite(densest) ? densest : 0;
+  }
+  Scene first = std::move(scenes[0]);
+  first.other_wavelengths.assign(std::make_move_iterator(scenes.begin() + 1),
+                                 std::make_move_iterator(scenes.end()));
+  return first;
+}
+
 /// Warning of a texture's colours above 1; empty: none, or a texture relative to its mean.
 std::string clipped_colors(const std::optional<Texture>& texture) {
   if (!texture || texture->is_relative) return {};
@@ -339,7 +374,7 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
     camera_frames = count_camera_frames(document);
     resolve_keyed_values(document);
   }
-  Scene scene = read_scene(document);
+  Scene scene = read_at_wavelengths(document);
   scene.camera_frames = camera_frames;
   scene.warnings.insert(scene.warnings.begin(), document.warnings.begin(), document.warnings.end());
   for (std::string& warning : texture_warnings(scene)) scene.warnings.push_back(std::move(warning));

@@ -9,6 +9,7 @@
 #include "input/key_rows.h"
 #include "input/presets.h"
 #include "input/readers.h"
+#include "input/spectral_values.h"
 #include "scene/scene_properties.h"
 #include "scene/source_place.h"
 
@@ -73,7 +74,8 @@ PhysicalMedium read_physical(const ObjectReader& medium) {
 
 /// Returns the texture's mean and normalises its texels by it.
 Rgb take_mean(Texture& texture) {
-  const Texel mean = texture.file->mean();
+  const Texel texel = texture.file->mean();
+  const Rgb mean = at_wavelengths(texture, {texel[0], texel[1], texel[2]});
   Rgb taken;
   for (std::size_t c = 0; c < 3; ++c) {
     taken[c] = std::max(0., mean[c]) * texture.scale[c];
@@ -162,7 +164,9 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   if (form == "preset") {
     const Value name = reader.need("preset");
     const Preset& preset = preset_of(name);
-    medium.coefficients = preset.coefficients;
+    medium.coefficients =
+        PhysicalMedium{coefficients_at(preset.coefficients.sigma_a, reader.wavelengths()),
+                       coefficients_at(preset.coefficients.sigma_s_prime, reader.wavelengths())};
     medium.eta = preset.eta;
   } else if (form == "layers") {
     medium.coefficients = PhysicalMedium{};

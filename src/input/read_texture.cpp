@@ -49,6 +49,19 @@ void check_channels(const Value& file, const std::optional<Value>& channel, cons
                                         : "the channels R, G and B, or Y, or one alone");
 }
 
+/// Colours become values at the document's wavelengths.
+void mix_channels(const Value& value, TexturePart part, Texture& texture) {
+  const ThreeWavelengths& wavelengths = *value.wavelengths();
+  if (part == TexturePart::color) {
+    texture.from_rgb = wavelengths.from_rgb;
+    for (Rgb& row : *texture.from_rgb) row = row * texture.scale;
+    texture.scale = Vec3d(1);
+  } else if (part == TexturePart::triple && value.info().type == ValueType::number_or_triple &&
+             wavelengths.bands[0][0] != wavelengths.bands[0][1]) {
+    value.fail("has red, green and blue for more than three wavelengths", "\"film\": {\"wavelengths\": 3}");
+  }
+}
+
 Texture read_texture(const Value& value, TexturePart part) {
   const ObjectReader reader(value, "texture");
   Texture texture;
@@ -63,6 +76,7 @@ Texture read_texture(const Value& value, TexturePart part) {
     throw told_at(file.place(), failure);
   }
   if (const auto scale = reader.find("scale")) texture.scale = scale->number_or_triple();
+  if (value.wavelengths() != nullptr) mix_channels(value, part, texture);
   const std::optional<Value> channel = reader.find("channel");
   if (channel && part != TexturePart::number)
     value.fail(part == TexturePart::color ? "is a colour" : "requires three numbers", "no 'channel'");
@@ -104,8 +118,8 @@ void read_textured(const Value& value, Vec3d& triple, std::optional<Texture>& te
   texture = read_texture(value, is_color ? TexturePart::color : TexturePart::triple);
   const std::optional<Texel>& constant = texture->file->constant();
   if (!constant) return;
-  for (std::size_t c = 0; c < 3; ++c)
-    triple[c] = checked(value, *texture, (*constant)[c] * texture->scale[c]);
+  const Rgb color = at_wavelengths(*texture, {(*constant)[0], (*constant)[1], (*constant)[2]});
+  for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, *texture, color[c] * texture->scale[c]);
   texture.reset();
 }
 

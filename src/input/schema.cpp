@@ -13,6 +13,7 @@
 #include "input/settings_table.h"
 #include "lights/all_lights.h"
 #include "scene/mesh_formats.h"
+#include "spectra/spectrum.h"
 #include "values/json_tree.h"
 
 namespace opaline {
@@ -217,10 +218,31 @@ std::vector<KeyInfo> texture_rows() {
   };
 }
 
+std::vector<KeyInfo> spectrum_rows() {
+  using enum ValueType;
+  return {
+      row("spectrum", "nm", list, "nm", {1, 1e5}, "",
+          "increasing wavelengths, with `values`; linear between them, constant beyond"),
+      row("spectrum", "values", list, "", kFiniteNumber, "",
+          "a value for each; a light's are relative: 1 at every wavelength has the luminance of the colour "
+          "1"),
+      row("spectrum", "spectrum", file, "", kFiniteNumber, "",
+          "text file with a wavelength in nm and a value per line, in place of `nm` and `values`; `#` begins "
+          "a comment"),
+      row("spectrum", "blackbody", number, "K", {200, 1e6}, "",
+          "lights: a black body of this temperature, with the luminance of the colour 1"),
+      row("spectrum", "illuminant", choice, "", kFiniteNumber, "",
+          "lights: `\"D65\"` (daylight, as the colour 1), `\"A\"` (light bulb), `\"FL2\"` (fluorescent) or "
+          "`\"E\"` (equal energy), with the luminance of the colour 1",
+          kIlluminantNames),
+      row("spectrum", "scale", number, "", kNonNegative, "1", "factor of the values"),
+  };
+}
+
 std::vector<KeyInfo> all_rows() {
   std::vector<KeyInfo> rows = scene_rows();
   for (const MediumRow& row : medium_rows()) rows.push_back(row.info);
-  for (const auto& part : {shape_rows(), built_in_shape_rows(), texture_rows(),
+  for (const auto& part : {shape_rows(), built_in_shape_rows(), texture_rows(), spectrum_rows(),
                            light_rows(static_cast<const LightSource*>(nullptr)), camera_rows()})
     rows.insert(rows.end(), part.begin(), part.end());
   for (const Member<Film>& member : film_members()) rows.push_back(member.info);
@@ -261,6 +283,11 @@ std::span<const std::string_view> section_keys(std::string_view section) {
   }();
   const auto found = sections.find(section);
   return found == sections.end() ? std::span<const std::string_view>() : found->second;
+}
+
+bool may_be_spectrum(const KeyInfo& info) {
+  return info.type == ValueType::color ||
+         (info.type == ValueType::number_or_triple && info.section == "medium");
 }
 
 std::string settings_path(std::string_view key) {

@@ -17,6 +17,8 @@ namespace opaline {
 std::span<const KeyInfo> schema();
 /// Keys of all sections naming files: setting one opens a file.
 std::span<const std::string_view> file_keys();
+/// True for colours, and coefficients of media: their values may be objects of the section "spectrum".
+bool may_be_spectrum(const KeyInfo& info);
 /// Path of a key of `settings` or of `settings.laboratory`: "settings.laboratory.near_field".
 std::string settings_path(std::string_view key);
 

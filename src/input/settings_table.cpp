@@ -187,6 +187,13 @@ std::span<const Member<Film>> film_members() {
       member<&Film::color_space>("color_space", choice, "", kFiniteNumber, "", {},
                                  "colour space of the EXR: `\"lin_rec709\"`: that of the scene; "
                                  "`\"acescg\"`: converted to ACEScg (AP1)"),
+      member<&Film::wavelengths>(
+          "wavelengths", whole_number, "", {3, 60},
+          "the fewest for the scene's spectra, with colours within 1 %; without spectra, "
+          "red, green and blue",
+          {view, view_near, surfaces},
+          "number of wavelengths of spectra, a multiple of 3; the image takes a third of "
+          "it times the time"),
   };
   return table;
 }

@@ -34,7 +34,9 @@ inline std::vector<KeyInfo> light_keys(const EnvironmentLight&) {
 inline void read_light(const ObjectReader& reader, double, EnvironmentLight& light) {
   const Value file = reader.need("file");
   try {
-    light.picture = EnvironmentPicture::read(file.file_path());
+    const ThreeWavelengths* const wavelengths = file.wavelengths();
+    light.picture =
+        EnvironmentPicture::read(file.file_path(), wavelengths != nullptr ? &wavelengths->from_rgb : nullptr);
   } catch (const Error& failure) {
     throw told_at(file.place(), failure);
   }

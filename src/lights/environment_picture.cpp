@@ -20,6 +20,7 @@
 #include "lights/cumulative_shares.h"
 #include "opaline/error.h"
 #include "opaline/image.h"
+#include "opaline/scene.h"
 
 namespace opaline {
 namespace {
@@ -111,14 +112,18 @@ EnvironmentPicture::EnvironmentPicture(std::size_t width, std::size_t height, st
   make_cosine_tables();
 }
 
-std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::string& path) {
+std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::string& path,
+                                                                   const std::array<Rgb, 3>* from_rgb) {
   static std::mutex mutex;
-  static std::map<std::string, KnownPicture> known;
+  static std::map<std::pair<std::string, std::vector<double>>, KnownPicture> known;
   std::error_code missing;  // reported by read_image
   const auto time = std::filesystem::last_write_time(path, missing);
   const auto bytes = std::filesystem::file_size(path, missing);
   const std::lock_guard lock(mutex);
-  KnownPicture& entry = known[path];
+  std::vector<double> mix;
+  if (from_rgb != nullptr)
+    for (const Rgb& row : *from_rgb) mix.insert(mix.end(), {row.x, row.y, row.z});
+  KnownPicture& entry = known[{path, mix}];
   if (auto picture = entry.picture.lock(); picture && !missing && entry.time == time && entry.bytes == bytes)
     return picture;
   const Image image = read_image(path);
@@ -126,8 +131,11 @@ std::shared_ptr<const EnvironmentPicture> EnvironmentPicture::read(const std::st
     throw bad_file(path, "is not an environment map", "a lat-long image, twice as wide as high",
                    std::to_string(image.full_width) + " x " + std::to_string(image.full_height));
   NegativePixels negative;
+  std::vector<RgbF> pixels = colours_of(path, image, negative);
+  if (from_rgb != nullptr)
+    for (RgbF& pixel : pixels) pixel = RgbF(component_max(at_wavelengths(*from_rgb, Rgb(pixel)), Rgb{}));
   const auto picture = std::make_shared<EnvironmentPicture>(
-      std::size_t(image.full_width), std::size_t(image.full_height), colours_of(path, image, negative));
+      std::size_t(image.full_width), std::size_t(image.full_height), std::move(pixels));
   picture->path_ = path;
   if (negative.count > 0)
     picture->warning_ =

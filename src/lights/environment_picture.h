@@ -26,7 +26,9 @@ class EnvironmentPicture {
   /// Reads the display window of a file, black outside the data window. Returns the same object while the
   /// file is unchanged and in use. Negative radiance becomes 0, see warning().
   /// error Error{bad_input}: as read_image; not the shape of an environment; a non-finite value
-  static std::shared_ptr<const EnvironmentPicture> read(const std::string& path);
+  /// in    from_rgb: ThreeWavelengths::from_rgb for its colours; null: red, green and blue
+  static std::shared_ptr<const EnvironmentPicture> read(const std::string& path,
+                                                        const std::array<Rgb, 3>* from_rgb = nullptr);
   const std::string& path() const { return path_; }  ///< path of the source file; empty: none
 
   /// in    direction: unit

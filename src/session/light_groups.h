@@ -24,7 +24,7 @@ std::vector<LightGroup> light_groups(const Scene& scene);
 /// the contribution of that light alone, bounced light included. They sum to R, G, B within float rounding.
 /// Each is an image with all other lights dark; since trees are approximate, each pixel's contributions are
 /// scaled to the image's sum, by factors within the evaluator's tolerance of 1, or within the noise beside
-/// shadow edges. The cost per light is that of a change of its colour; none for a single light.
+/// shadow edges. Each light costs as much as a change of its colour; a single light nothing.
 /// in    picture: from session.render()
 /// error as Session::render and light_groups; the session's scene is restored
 void add_light_groups(Session& session, Image& picture, Monitor* monitor = nullptr);

@@ -2,6 +2,7 @@
 #include "session/scene_hash.h"
 
 #include <OpenImageIO/hash.h>
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <set>
@@ -11,6 +12,7 @@
 #include "geometry/mesh_file.h"
 #include "image/texture_file.h"
 #include "lights/environment_picture.h"
+#include "lights/light.h"
 #include "opaline/error.h"
 #include "scene/scene_properties.h"
 #include "scene/source_place.h"
@@ -25,6 +27,23 @@ std::string contents_of(const Shape& shape, const std::string& path) {
     return mesh_contents(path);
   } catch (const Error& failure) {
     throw told_at(shape.place, failure);
+  }
+}
+
+/// Adds colours read from files of spectra.
+template <class Add>
+void add_values(const Scene& scene, const Add& add) {
+  if (!scene.wavelengths) return;
+  const auto add_rgb = [&](const Rgb& value) { add(fmt::format("{} {} {}", value.x, value.y, value.z)); };
+  for (const Light& light : scene.lights) add_rgb(emission(light));
+  for (const Shape& shape : scene.shapes) add_rgb(shape.reflectance);
+  for (const Medium& medium : scene.media) {
+    add_rgb(medium.tint);
+    add_rgb(medium.base_color);
+    const auto* const physical = std::get_if<PhysicalMedium>(&medium.coefficients);
+    const auto* const artist = std::get_if<ArtistMedium>(&medium.coefficients);
+    add_rgb(physical != nullptr ? physical->sigma_a : artist->subsurface_color);
+    add_rgb(physical != nullptr ? physical->sigma_s_prime : artist->subsurface_radius);
   }
 }
 
@@ -52,6 +71,8 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
   for (const Light& light : scene.lights)
     if (const auto* environment = std::get_if<EnvironmentLight>(&light.source))
       add(std::to_string(environment->picture->hash()));
+  add_values(scene, add);
+  for (const Scene& other : scene.other_wavelengths) add_values(other, add);
   return hash.digest();
 }
 

@@ -11,6 +11,7 @@
 #include "plan/make_plan.h"
 #include "scene/scene_properties.h"
 #include "session/first_light.h"
+#include "session/spectral_image.h"
 
 namespace opaline {
 namespace {
@@ -191,7 +192,9 @@ void Session::State::prepare_rays() {
 Image Session::State::first_light(Monitor* monitor) {
   const CancelScope scope(monitor);
   prepare_rays();
-  return opaline::first_light({scene_, *world_, *rays_, plan_, monitor});
+  Image image = opaline::first_light({scene_, *world_, *rays_, plan_, monitor});
+  if (scene_.wavelengths) convert_to_rgb(image, scene_.wavelengths->alone);
+  return image;
 }
 
 std::vector<BodyStages> Session::State::body_stages(const PrecomputeInput& input,
@@ -262,21 +265,56 @@ void Session::State::prepare(Monitor* monitor) {
 }
 
 RenderResult Session::render(Monitor* monitor) {
-  State& state = *state_;
   const CancelScope scope(monitor);
-  state.prepare(monitor);
-  const Scene& scene = state.scene_;
-  if (auto image = method_of(scene.settings.method)
-                       .render_image({scene, *state.world_, *state.rays_, state.plan_, monitor}))
+  return state_->scene_.wavelengths ? state_->spectral_image(monitor) : state_->channels_image(monitor);
+}
+
+RenderResult Session::State::channels_image(Monitor* monitor) {
+  prepare(monitor);
+  if (auto image = method_of(scene_.settings.method).render_image({scene_, *world_, *rays_, plan_, monitor}))
     return *std::move(image);
-  HeldView* const view = state.held_view();
+  HeldView* const view = held_view();
   if (view != nullptr) view->next_picture();
-  RenderInput input{scene, *state.world_, *state.rays_, state.bodies(), monitor, view};
-  if (bounces_of(scene) > 0) state.update_bounced_places(input);
-  input.bounced = state.bounced_;
+  RenderInput input{scene_, *world_, *rays_, bodies(), monitor, view};
+  if (bounces_of(scene_) > 0) update_bounced_places(input);
+  input.bounced = bounced_;
   RenderResult result = opaline::render(input);
-  state.work_.queries += result.queries;
+  work_.queries += result.queries;
   return result;
+}
+
+/// Renders each group of wavelengths as an edit of the media and colours. The first group's scene remains.
+RenderResult Session::State::spectral_image(Monitor* monitor) {
+  const Scene first = scene_;
+  const std::vector<BodyPlan> reference = reference_;
+  std::vector<StageCost> costs;
+  const auto restore = [&] {
+    if (first.other_wavelengths.empty()) return;
+    edit(first);
+    reference_ = reference;
+    costs_ = costs;
+  };
+  RenderResult sum;
+  try {
+    sum = channels_image(monitor);
+    costs = costs_;
+    convert_to_rgb(sum.image, scene_.wavelengths->to_rgb);
+    if (reference_.empty()) reference_ = plan_.groups;  // same profiles at all wavelengths
+    for (std::size_t g = 0; g < first.other_wavelengths.size(); ++g) {
+      edit(at_other_wavelengths(first, g));
+      RenderResult result = channels_image(monitor);
+      convert_to_rgb(result.image, scene_.wavelengths->to_rgb);
+      add_colors(sum.image, result.image);
+      sum.queries += result.queries;
+      sum.non_finite += result.non_finite;
+      costs.insert(costs.end(), costs_.begin(), costs_.end());
+    }
+  } catch (...) {
+    restore();
+    throw;
+  }
+  restore();
+  return sum;
 }
 
 /// Valid cache of earlier images; null: caching is off.

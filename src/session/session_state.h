@@ -25,6 +25,8 @@ struct Session::State {
   void prepare_rays();
   Image first_light(Monitor* monitor);
   void prepare(Monitor* monitor);
+  RenderResult channels_image(Monitor* monitor);
+  RenderResult spectral_image(Monitor* monitor);
 
   bool is_needed() const { return method_of(scene_.settings.method).needs_bodies() && !plan_.groups.empty(); }
   /// Bodies used by the image: none if the method or the plan has none, even if later scenes may reuse some.

@@ -111,7 +111,7 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
     if (uvs_of(input.scene, shape) != MeshUvs::unread) add_coordinates(key, input.world.meshes[i]);
     if (uses_vertex_colors(input.scene, shape, input.world.meshes[i]))
-      key.add(shape.has_reflectance).add_array(std::span(input.world.meshes[i].colors));
+      add_vertex_colors(key.add(shape.has_reflectance), input.scene, input.world.meshes[i]);
   }
   for (const Light& light : lights) key.add(view_light_key(light)).add(emission(light));
   return key.key();

@@ -13,6 +13,8 @@
 
 namespace opaline {
 
+struct ThreeWavelengths;
+
 /// One JSON value; a member of an object includes its key.
 struct Node {
   enum class Kind { null, boolean, number, string, array, object };
@@ -36,8 +38,9 @@ struct Document {
   std::vector<std::string> overrides;
   Node root;
   int frame = 1;
-  std::vector<std::size_t> line_starts = {};  ///< line starts of the text, see line_starts_of
-  std::vector<std::string> warnings = {};     ///< one line each
+  std::vector<std::size_t> line_starts = {};      ///< line starts of the text, see line_starts_of
+  std::vector<std::string> warnings = {};         ///< one line each
+  const ThreeWavelengths* wavelengths = nullptr;  ///< wavelengths of the colours; null: red, green and blue
 };
 
 /// Offset of each line's first byte.

@@ -33,6 +33,9 @@ class Value {
   /// Its position in the file.
   SourcePlace place() const { return place_at(*document_, node_->offset, node_->override_index); }
 
+  /// Wavelengths of its colours; null: red, green and blue.
+  const ThreeWavelengths* wavelengths() const { return document_->wavelengths; }
+
   /// A number in the range of its row. Each getter below throws Error{bad_input} at the value.
   double number() const { return number(info_->range); }
   /// A number in this range.

@@ -14,6 +14,7 @@
 #include "plan/picture_warnings.h"
 #include "plan/placement_warnings.h"
 #include "plan/shapes_inside.h"
+#include "session/spectral_image.h"
 #include "subsurface/method.h"
 #include "view/lit_anew.h"
 
@@ -214,6 +215,7 @@ void ViewRenderer::draw_draft(const Wanted& wanted, int stride, PictureStep step
   input.bounced = session_->bounced_places();
   if (input.bounced == nullptr) scene.settings.bounces = 0;
   Image image = render(input).image;
+  if (const auto& wavelengths = input.scene.wavelengths) convert_to_rgb(image, wavelengths->alone);
   const double seconds = seconds_since(start);
   seconds_per_pixel_ += .5 * (seconds / pixels_of(scene.film) - seconds_per_pixel_);
   publish(wanted, step, std::move(image));

@@ -58,6 +58,7 @@ std::vector<Change> changes() {
   const auto texture = [](const std::string& rest) {
     return R"(shapes.floor.reflectance={"texture": "cells.png", )" + rest + "}";
   };
+  const Overrides spectrum{R"(media.stone.sigma_a={"nm": [400, 700], "values": [0.1, 0.01]})"};
   const Overrides volume{"settings.method=volume", "settings.bounces=0", "settings.samples=30"},
       cells{"settings.method=volume_diffusion", "settings.bounces=0"};
   return {
@@ -256,6 +257,19 @@ std::vector<Change> changes() {
        "settings.cell_size=2.5",
        {cells[0], cells[1], "settings.max_samples=300", "media.wax.texture_mix=medium",
         R"(media.wax.subsurface_color={"texture": "cells.png"})"}},
+      {"spectrum.nm", R"(media.stone.sigma_a={"nm": [450, 700], "values": [0.1, 0.01]})", spectrum},
+      {"spectrum.values", R"(media.stone.sigma_a={"nm": [400, 700], "values": [0.1, 0.02]})", spectrum},
+      {"spectrum.spectrum", R"(media.stone.sigma_a={"spectrum": "blood.txt"})", spectrum},
+      {"spectrum.blackbody",
+       R"(lights.panel.radiance={"blackbody": 4000})",
+       {R"(lights.panel.radiance={"blackbody": 3000})"}},
+      {"spectrum.illuminant",
+       R"(lights.panel.radiance={"illuminant": "A"})",
+       {R"(lights.panel.radiance={"illuminant": "E"})"}},
+      {"spectrum.scale",
+       R"(lights.panel.radiance={"illuminant": "E", "scale": 3})",
+       {R"(lights.panel.radiance={"illuminant": "E"})"}},
+      {"film.wavelengths", "film.wavelengths=6", spectrum},
       {"settings.reenter", "settings.reenter=false", volume},
       {"settings.bounces", "settings.bounces=0"},
       {"settings.seed", "settings.seed=5"},
@@ -327,6 +341,7 @@ TEST_P(EveryKey, IsNoticed) {
             std::string(kBump).replace(std::string(kBump).find("14 0"), 4, "14 0 1 .2 .1"));
   write_png(folder.file("cells.png"), picture(8, 8, .37f), 0);
   write_png(folder.file("other.png"), picture(8, 8, .23f), 0);
+  put_bytes(folder.file("blood.txt"), "400 0.2\n550 0.1\n700 0\n");
   write_exr(folder.file("room.exr"), picture(8, 4, .37f), false);
   write_exr(folder.file("night.exr"), picture(8, 4, .11f), false);
   const auto scene_with = [&](const Overrides& overrides) {

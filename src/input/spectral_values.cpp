@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input/spectral_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/input_file.h"
+#include "diffusion/dipole.h"
+#include "input/presets.h"
+#include "input/schema.h"
+#include "opaline/error.h"
+#include "spectra/cie_tables.h"
+#include "spectra/wavelengths.h"
+#include "values/value.h"
+
+namespace opaline {
+namespace {
+
+/// Power of light, factor of light, or coefficient of a medium.
+enum class Quantity { emission, factor, coefficient };
+
+constexpr std::array<std::string_view, 4> kForms{"nm", "spectrum", "blackbody", "illuminant"};
+
+bool is_spectrum(const Node& node) {
+  return node.kind == Node::Kind::object &&
+         std::ranges::any_of(kForms, [&](auto key) { return find_member(node, key) != nullptr; });
+}
+
+/// Calls visit(node, row, quantity, path) for each value of an object with red, green and blue.
+template <class Visit>
+void visit_members(Node& object, std::string_view section, const std::string& path, const Visit& visit) {
+  for (Node& member : object.children) {
+    const std::span<const std::string_view> keys = section_keys(section);
+    if (std::ranges::find(keys, member.key) == keys.end()) continue;
+    const KeyInfo& info = key_info(section, member.key);
+    if (!may_be_spectrum(info)) continue;
+    const bool is_coefficient = info.type != ValueType::color;
+    const bool emits = section.starts_with("light.") ? member.key != "strength" : section == "scene";
+    visit(member, info,
+          is_coefficient ? Quantity::coefficient
+          : emits        ? Quantity::emission
+                         : Quantity::factor,
+          path.empty() ? member.key : path + '.' + member.key);
+  }
+}
+
+template <class Visit>
+void visit_colors(Node& root, const Visit& visit) {
+  if (root.kind != Node::Kind::object) return;
+  visit_members(root, "scene", "", visit);
+  for (Node& part : root.children) {
+    const bool is_media = part.key == "media", is_lights = part.key == "lights";
+    if (!is_media && !is_lights && part.key != "shapes") continue;
+    for (std::size_t i = 0; i < part.children.size(); ++i) {
+      Node& object = part.children[i];
+      if (object.kind != Node::Kind::object) continue;
+      const Node* const type = is_lights ? find_member(object, "type") : nullptr;
+      const std::string section = is_media    ? "medium"
+                                  : is_lights ? "light." + (type != nullptr ? type->text : "")
+                                              : "shape";
+      visit_members(object, section, part.key + '.' + (is_media ? object.key : std::to_string(i)), visit);
+    }
+  }
+}
+
+std::vector<double> numbers_of(const Value& list, const Range& range) {
+  std::vector<double> numbers;
+  for (const Value& value : list.list()) numbers.push_back(value.number(range));
+  return numbers;
+}
+
+/// Two columns, nm and value, separated by blanks, commas or semicolons; '#' begins a comment.
+Spectrum read_file(const Value& name, const Range& range) {
+  const std::string path = name.file_path();
+  Spectrum spectrum;
+  try {
+    const std::string text = InputFile(path, "spectrum").read_all();
+    int number = 0;
+    for (std::size_t begin = 0; begin < text.size(); ++number) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      std::string line = text.substr(begin, std::min(end, text.find('#', begin)) - begin);
+      begin = end + 1;
+      std::ranges::replace_if(
+          line, [](char c) { return c == ',' || c == ';' || c == '\t' || c == '\r'; }, ' ');
+      std::vector<double> row;
+      for (std::size_t at = line.find_first_not_of(' '); at != std::string::npos;
+           at = line.find_first_not_of(' ', at)) {
+        const std::size_t after = std::min(line.find(' ', at), line.size());
+        const auto [rest, error] = std::from_chars(line.data() + at, line.data() + after, row.emplace_back());
+        if (error != std::errc() || rest != line.data() + after || !std::isfinite(row.back()))
+          throw Error(ErrorKind::bad_input, path, number + 1, int(at) + 1, "the spectrum has no number here",
+                      "nm and a value", printable(line.substr(at, after - at)));
+        at = after;
+      }
+      if (row.empty()) continue;
+      if (row.size() != 2 || !(row[1] >= range.low && row[1] <= range.high) ||
+          (!spectrum.nm.empty() && !(row[0] > spectrum.nm.back())))
+        throw Error(ErrorKind::bad_input, path, number + 1, 0, "the spectrum has a wrong line",
+                    fmt::format("an increasing wavelength in nm, and a value from {:g} to {:g}", range.low,
+                                range.high),
+                    printable(line));
+      spectrum.nm.push_back(row[0]);
+      spectrum.values.push_back(row[1]);
+    }
+  } catch (const Error& failure) {
+    throw told_at(name.place(), failure);
+  }
+  if (spectrum.nm.empty()) name.fail("refers to a file without a line", "lines of nm and a value");
+  return spectrum;
+}
+
+Spectrum read_table(const ObjectReader& reader, const Range& range) {
+  const Value nm = reader.need("nm"), values = reader.need("values");
+  Spectrum spectrum{numbers_of(nm, nm.info().range), numbers_of(values, range)};
+  if (spectrum.nm.empty()) nm.fail("is empty", "a wavelength or more");
+  if (spectrum.nm.size() != spectrum.values.size())
+    values.fail("has another length than 'nm'", fmt::format("{} values", spectrum.nm.size()));
+  if (std::ranges::adjacent_find(spectrum.nm, std::greater_equal()) != spectrum.nm.end())
+    nm.fail("is not increasing", "increasing wavelengths");
+  return spectrum;
+}
+
+Spectrum read_spectrum(const Value& value, Quantity quantity) {
+  const ObjectReader reader(value, "spectrum");
+  const std::string_view form = reader.exactly_one_of(kForms);
+  const Range& range = value.info().range;
+  Spectrum spectrum;
+  if (form == "nm") {
+    spectrum = read_table(reader, range);
+  } else if (form == "spectrum") {
+    spectrum = read_file(reader.need(form), range);
+  } else {
+    if (quantity != Quantity::emission)
+      reader.need(form).fail_key("is the power of a light", "'nm' and 'values', or 'spectrum'");
+    spectrum = form == "blackbody" ? black_body(reader.need(form).number())
+                                   : illuminant(kIlluminantNames[reader.need(form).choice()]);
+    spectrum = with_unit_luminance(std::move(spectrum));
+  }
+  if (form != "nm")
+    if (const auto values = reader.find("values"))
+      values->fail_key(fmt::format("cannot be combined with '{}'", form), "'nm' with it");
+  if (const auto scale = reader.find("scale"))
+    for (double& number : spectrum.values) number *= scale->number();
+  if (quantity == Quantity::factor)
+    for (const double number : spectrum.values)
+      if (number > range.high)
+        value.fail("is out of range with its scale", fmt::format("at most {:g}", range.high));
+  return spectrum;
+}
+
+/// True for values read as they are: textures, and a value of another type, for the reader's message.
+bool is_left(const Node& node) {
+  return node.kind == Node::Kind::object || node.kind == Node::Kind::boolean || node.kind == Node::Kind::null;
+}
+
+Rgb rgb_of(const Value& value, Quantity quantity) {
+  return quantity == Quantity::coefficient ? value.number_or_triple() : value.color();
+}
+
+double value_at(const Value& value, Quantity quantity, const ThreeWavelengths& wavelengths, std::size_t c) {
+  const auto [low, high] = wavelengths.bands[c];
+  if (is_spectrum(value.node())) {
+    const double mean = read_spectrum(value, quantity).mean(low, high);
+    return quantity == Quantity::emission ? mean / unit_d65().mean(low, high) : mean;
+  }
+  const Rgb rgb = rgb_of(value, quantity);
+  if (rgb.x == rgb.y && rgb.y == rgb.z) return rgb.x;
+  if (quantity == Quantity::coefficient) return coefficient_at(rgb, .5 * (low + high));
+  // Saturated colours are outside of the smoothest spectra.
+  return std::clamp(dot(wavelengths.from_rgb[c], rgb), value.info().range.low, value.info().range.high);
+}
+
+/// A colour or coefficient on a grid across the observer.
+Spectrum spectrum_of(const Value& value, Quantity quantity) {
+  if (is_spectrum(value.node())) return read_spectrum(value, quantity);
+  const Rgb rgb = rgb_of(value, quantity);
+  return each_nm([&](double nm) { return coefficient_at(rgb, nm); });
+}
+
+constexpr double kErrorOfColors = .01;
+
+/// Spectra with colours to reproduce.
+struct Checked {
+  std::vector<Spectrum> lights{unit_d65()}, surfaces{{{560}, {1}}};
+};
+
+/// Adds a medium as surfaces: the reflectance of its half space, and its decay over the mean diffuse mean free
+/// path. Without boundary.
+void add_medium(const Spectrum& sigma_a, const Spectrum& sigma_s, Checked& checked) {
+  const auto decay = [&](double nm) {
+    const double a = sigma_a.at(nm), s = sigma_s.at(nm);
+    return std::sqrt(3 * a * (a + s));
+  };
+  checked.surfaces.push_back(each_nm([&](double nm) {
+    const double a = sigma_a.at(nm), s = sigma_s.at(nm);
+    return a + s > 0 ? total_diffuse_reflectance(make_dipole(1 / (a + s), a / (a + s), 1)) : 0;
+  }));
+  double mean = 0, weights = 0, nm = kFirstWavelength;
+  for (const auto& [x, y, z] : observer_1931()) {
+    mean += (x + y + z) * decay(nm++);
+    weights += x + y + z;
+  }
+  if (!(mean > 0)) return;
+  const double distance = weights / mean;
+  checked.surfaces.push_back(each_nm([&](double at) { return std::exp(-decay(at) * distance); }));
+}
+
+Checked checked_spectra(Document& document) {
+  Checked checked;
+  struct OfMedium {
+    std::optional<Spectrum> sigma_a, sigma_s;
+    bool has_spectrum = false;
+  };
+  std::map<std::string, OfMedium> media;
+  visit_colors(document.root,
+               [&](Node& node, const KeyInfo& info, Quantity quantity, const std::string& path) {
+                 const bool varies = is_spectrum(node);
+                 if (is_left(node) && !varies) return;
+                 const Value value(document, node, path, info);
+                 if (quantity == Quantity::coefficient) {
+                   OfMedium& medium = media[path.substr(0, path.rfind('.'))];
+                   medium.has_spectrum |= varies;
+                   if (node.key == "sigma_a") medium.sigma_a = spectrum_of(value, quantity);
+                   if (node.key.starts_with("sigma_s")) medium.sigma_s = spectrum_of(value, quantity);
+                 } else if (varies) {
+                   (quantity == Quantity::emission ? checked.lights : checked.surfaces)
+                       .push_back(spectrum_of(value, quantity));
+                 }
+               });
+  for (const auto& [name, medium] : media)
+    if (medium.has_spectrum && medium.sigma_a && medium.sigma_s)
+      add_medium(*medium.sigma_a, *medium.sigma_s, checked);
+  return checked;
+}
+
+double largest_error(const Checked& checked, const SpectralRule& rule) {
+  double largest = 0;
+  for (const Spectrum& light : checked.lights)
+    for (const Spectrum& surface : checked.surfaces) {
+      const Rgb exact = exact_color(light, surface), difference = color_by(rule, light, surface) - exact;
+      const double brightest = max_component(exact);
+      for (std::size_t c = 0; c < 3 && brightest > 0; ++c)
+        largest = std::max(largest, std::abs(difference[c]) / brightest);
+    }
+  return largest;
+}
+
+int fewest_wavelengths(const Checked& checked) {
+  constexpr std::array kNumbers{3, 6, 9, 12, 15, 21, 30};
+  for (const int number : kNumbers)
+    if (largest_error(checked, spectral_rule(number)) <= kErrorOfColors) return number;
+  return kNumbers.back();
+}
+
+}  // namespace
+
+std::optional<int> wavelengths_of(const Document& document) {
+  if (document.root.kind != Node::Kind::object) return {};
+  bool has_spectra = false;
+  Document copy = document;
+  visit_colors(copy.root, [&](const Node& node, auto&&...) { has_spectra |= is_spectrum(node); });
+  if (const Node* film = find_member(copy.root, "film"); film != nullptr && film->kind == Node::Kind::object)
+    if (const Node* const number = find_member(*film, "wavelengths")) {
+      const Value value(copy, *number, "film.wavelengths", key_info("film", "wavelengths"));
+      const std::uint64_t wavelengths = value.whole_number();
+      if (wavelengths % 3 != 0) value.fail("is not a multiple of 3", "3, 6, 9, ... 60");
+      return int(wavelengths);
+    }
+  if (!has_spectra) return {};
+  return fewest_wavelengths(checked_spectra(copy));
+}
+
+void resolve_spectra(Document& document, const ThreeWavelengths& wavelengths) {
+  visit_colors(document.root,
+               [&](Node& node, const KeyInfo& info, Quantity quantity, const std::string& path) {
+                 if (is_left(node) && !is_spectrum(node)) return;
+                 const Value value(document, node, path, info);
+                 std::array<Node, 3> numbers;
+                 for (std::size_t c = 0; c < 3; ++c) {
+                   numbers[c].kind = Node::Kind::number;
+                   numbers[c].number = value_at(value, quantity, wavelengths, c);
+                   numbers[c].text = fmt::format("{}", numbers[c].number);
+                   numbers[c].offset = node.offset;
+                   numbers[c].override_index = node.override_index;
+                 }
+                 node.kind = Node::Kind::array;
+                 node.children.assign(numbers.begin(), numbers.end());
+               });
+}
+
+Rgb coefficients_at(const Rgb& rgb, const ThreeWavelengths* wavelengths) {
+  if (wavelengths == nullptr) return rgb;
+  Rgb result;
+  for (std::size_t c = 0; c < 3; ++c)
+    result[c] = coefficient_at(rgb, .5 * (wavelengths->bands[c][0] + wavelengths->bands[c][1]));
+  return result;
+}
+
+}  // namespace opaline

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/spectral_image.h"
+
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "core/parallel.h"
+#include "lights/light.h"
+#include "opaline/error.h"
+
+namespace opaline {
+namespace {
+
+enum class Weight { plain, square, magnitude };
+
+/// Three adjacent channels.
+struct ColorLayer {
+  std::size_t red;
+  Weight weight;
+};
+
+std::vector<ColorLayer> color_layers(const Image& image) {
+  std::vector<ColorLayer> layers;
+  for (std::size_t c = 0; c < image.channels.size(); ++c) {
+    const std::string_view name = image.channels[c];
+    const auto is = [&](std::string_view layer) { return name == std::string(layer) + ".R"; };
+    if (name == "R" || is("diffuse") || is("specular") || is("albedo") || is("irradiance"))
+      layers.push_back({c, Weight::plain});
+    if (is("variance")) layers.push_back({c, Weight::square});
+    if (is("error")) layers.push_back({c, Weight::magnitude});
+  }
+  return layers;
+}
+
+template <class Use>
+void for_each_pixel(const Image& image, const Use& use) {
+  const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
+  parallel_chunks(pixels, 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) use(i * image.channels.size());
+  });
+}
+
+Rgb weighted(const Rgb& weight, Weight by) {
+  if (by == Weight::plain) return weight;
+  if (by == Weight::square) return weight * weight;
+  return {std::abs(weight.x), std::abs(weight.y), std::abs(weight.z)};
+}
+
+}  // namespace
+
+void convert_to_rgb(Image& image, const std::array<Rgb, 3>& to_rgb) {
+  const std::vector<ColorLayer> layers = color_layers(image);
+  for_each_pixel(image, [&](std::size_t pixel) {
+    for (const ColorLayer& layer : layers) {
+      float* const values = image.pixels.data() + pixel + layer.red;
+      Rgb color;
+      for (std::size_t c = 0; c < 3; ++c) color += weighted(to_rgb[c], layer.weight) * double(values[c]);
+      for (std::size_t c = 0; c < 3; ++c) values[c] = float(color[c]);
+    }
+  });
+}
+
+void add_colors(Image& image, const Image& other) {
+  require(image.channels == other.channels && image.pixels.size() == other.pixels.size(),
+          "images of one view have the same layers");
+  const std::vector<ColorLayer> layers = color_layers(image);
+  for_each_pixel(image, [&](std::size_t pixel) {
+    for (const ColorLayer& layer : layers)
+      for (std::size_t c = layer.red; c < layer.red + 3; ++c)
+        image.pixels[pixel + c] += other.pixels[pixel + c];
+  });
+}
+
+Scene at_other_wavelengths(const Scene& scene, std::size_t index) {
+  Scene other = scene.other_wavelengths[index];
+  other.camera = scene.camera;
+  other.film = scene.film;
+  other.settings = scene.settings;
+  for (std::size_t l = 0; l < other.lights.size() && l < scene.lights.size(); ++l)
+    if (emission(scene.lights[l]) == Rgb{}) other.lights[l] = with_emission(other.lights[l], {});
+  return other;
+}
+
+}  // namespace opaline
