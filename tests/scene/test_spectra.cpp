@@ -73,7 +73,8 @@ TEST(Spectra, ColorsReturn) {
     Rgb sum, alone;
     for (const ThreeWavelengths& group : groups_of(rule))
       for (std::size_t c = 0; c < 3; ++c) sum += group.to_rgb[c];
-    for (const Rgb& weight : groups_of(rule).back().alone) alone += weight;
+    const ThreeWavelengths last = groups_of(rule).back();
+    for (const Rgb& weight : last.alone) alone += weight;
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(sum[c], 1, 1e-9);
       EXPECT_NEAR(alone[c], 1, 1e-9);

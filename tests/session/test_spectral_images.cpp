@@ -7,6 +7,7 @@
 #include "session/light_groups.h"
 #include "support/pictures.h"
 #include "support/scene_picture.h"
+#include "support/scenes.h"
 #include "support/statistics.h"
 
 namespace opaline::test {

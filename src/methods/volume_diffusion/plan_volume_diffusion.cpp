@@ -107,7 +107,7 @@ BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyP
   constexpr double kVaryingCell = 350;  // its own medium, and the flux to each neighbour
   const double in_wires =
       body.thickness > 0 ? 1.2 * needle_fraction(input.world, body) * body.cell / body.thickness : 0;
-  // Cells that cut a surface are as many as its projections along the axes have; fitted to spheres.
+  // The cells cutting a surface are as many as those of its projections along the axes; fitted to spheres.
   constexpr double kProjectedOfSphere = 1.5;
   const double of_sphere = projected_area(input.world, body) / kProjectedOfSphere;
   BodyMemory memory;
