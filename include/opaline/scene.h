@@ -79,6 +79,8 @@ struct Texture {
   bool is_relative = false;  ///< scaled to a mean of 1: its texels may exceed 1, unlike other colours
   /// ThreeWavelengths::from_rgb, applied to its colours before `scale`; none: red, green and blue.
   std::optional<std::array<Rgb, 3>> from_rgb{};
+  /// Colours multiply its own, over their mean; normals turn its own further.
+  std::vector<Texture> details{};
   SourcePlace place{};
   friend bool operator==(const Texture&, const Texture&) = default;
 };
@@ -159,7 +161,8 @@ struct Medium {
   NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< for ProfileKind::normalized_diffusion
   Grain grain{};                                               ///< grain of the boundary
   std::vector<MediumLayer> layers{};                           ///< empty: homogeneous, or by its textures
-  double densest = 0;  ///< smallest mean free path of all wavelengths, mm; 0: that of these coefficients
+  /// Shortest mean free path and diffuse mean free path of all wavelengths, mm; 0: none shorter than these.
+  double shortest_path = 0, shortest_fading = 0;
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 

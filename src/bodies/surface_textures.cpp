@@ -50,9 +50,10 @@ RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
   RgbF color;
   for (std::size_t c = 0; c < 3; ++c) {
     const float value = std::max(0.0f, texel[c]) * float(texture.scale[c]);
-    color[c] = texture.is_relative ? value : std::min(value, 1.0f);
+    color[c] = value;
   }
-  return color;
+  for (const Texture& detail : texture.details) color = color * color_of(detail, place);
+  return texture.is_relative ? color : component_min(color, RgbF(1));
 }
 
 // 8-bit normal maps have no exact zero: the values 127 and 128 on both sides of it count as zero.
@@ -278,7 +279,11 @@ Vec3f SurfaceTextures::tangent(const Place& place, const SurfacePoint& point) co
 
 float SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
   const OfMesh& own = of_mesh_[place.mesh];
-  const float variance = own.normals != nullptr ? map_normal(*own.normals, place, point) : 0;
+  float variance = 0;
+  if (own.normals != nullptr) {
+    variance = map_normal(*own.normals, place, point);
+    for (const Texture& detail : own.normals->details) variance += map_normal(detail, place, point);
+  }
   if (own.heights == nullptr) return variance;
   const Vec3f rise = height_gradient(*own.heights, place) * float(1 / world_.unit),
               along = rise - point.normal * dot(rise, point.normal);
@@ -324,6 +329,7 @@ void add_to_key(KeyBuilder& key, const Texture& texture) {
   if (texture.from_rgb)
     for (const Rgb& row : *texture.from_rgb) key.add(row);
   key.add(texture.uv_offset).add(texture.uv_scale).add(texture.uv_rotation);
+  for (const Texture& detail : texture.details) add_to_key(key.add(std::string("detail")), detail);
 }
 
 void add_vertex_colors(KeyBuilder& key, const Scene& scene, const Mesh& mesh) {

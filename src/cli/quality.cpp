@@ -34,7 +34,7 @@ KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, 
   const TimeBudget chosen = stages.run(
       "choosing",
       [&] {
-        return fit_budget(session, scene, budget_left(arguments), trial_writing(arguments, scene.film),
+        return fit_budget(session, scene, budget_left(arguments, scene), trial_writing(arguments, scene.film),
                           &stages.monitor());
       },
       InnerStages::trials);
@@ -106,9 +106,10 @@ bool chooses_settings(const RenderArguments& arguments) {
   return arguments.time_budget || arguments.target_error;
 }
 
-double budget_left(const RenderArguments& arguments) {
+double budget_left(const RenderArguments& arguments, const Scene& scene) {
   // A spent budget counts as 1 ms, and is reported as too small.
-  return std::max(1e-3, *arguments.time_budget - process_cpu_seconds());
+  return std::max(1e-3, *arguments.time_budget - process_cpu_seconds()) /
+         double(1 + scene.other_wavelengths.size());
 }
 
 Plan announced_plan(const RenderArguments& arguments, const Session& session) {

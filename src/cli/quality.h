@@ -44,8 +44,8 @@ void warn_of_little_time(const RenderArguments& arguments, const Film& film, dou
 /// True if --time-budget or --target-error is given.
 bool chooses_settings(const RenderArguments& arguments);
 
-/// CPU seconds left of --time-budget.
-double budget_left(const RenderArguments& arguments);
+/// CPU seconds left of --time-budget, for each three wavelengths.
+double budget_left(const RenderArguments& arguments, const Scene& scene);
 
 /// With --verify: measures the error of the session's image.
 std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArguments& arguments,

@@ -88,7 +88,8 @@ std::string resume_hint(const RenderArguments& arguments, const Session& session
 DirectResult shade_direct(const RenderArguments& arguments, const Session& session, Monitor& monitor) {
   if (arguments.time_budget)
     return direct_within({session.scene(), session.world(), session.rays(), session.plan(), &monitor},
-                         budget_left(arguments), trial_writing(arguments, session.scene().film));
+                         budget_left(arguments, session.scene()),
+                         trial_writing(arguments, session.scene().film));
   ResumableState resumable(arguments, session.scene());
   try {
     DirectResult result =
@@ -183,6 +184,14 @@ struct Shared {
 /// error Error{bad_input}: an option without effect on the method
 void check_method_options(const RenderArguments& arguments, const Scene& scene) {
   const Method method = scene.settings.method;
+  const bool accumulates =
+      !arguments.resume.empty() ||
+      (method == Method::direct && (arguments.time_budget || scene.settings.until_error));
+  if (accumulates && !scene.other_wavelengths.empty())
+    throw Error(ErrorKind::bad_input, {}, 0, 0,
+                "a spectral image of more than three wavelengths cannot be continued, or stop at an error",
+                "--set film.wavelengths=3, or --entry-samples N",
+                fmt::format("{} wavelengths", 3 * (1 + scene.other_wavelengths.size())));
   if (method == Method::direct || scene.lights.empty()) return;
   const auto no_use = [&](const char* option, const char* methods) {
     return Error(ErrorKind::bad_input, {}, 0, 0, std::string(option) + " has no effect with this method",

@@ -186,13 +186,26 @@ Scene read_scene(const Document& document) {
   return scene;
 }
 
-double smallest_mean_free_path(Medium medium) {
-  medium.profile = ProfileKind::dipole;
-  double smallest = std::numeric_limits<double>::infinity();
-  const DiffuseProfile profile = make_diffuse_profile(medium);
-  for (std::size_t c = 0; c < 3; ++c)
-    if (profile.mean_free_path[c] > 0) smallest = std::min(smallest, double(profile.mean_free_path[c]));
-  return smallest;
+/// Sets the shortest lengths of the media, for the same samples and cells at all wavelengths.
+void share_lengths(std::span<Scene> scenes) {
+  for (std::size_t m = 0; m < scenes[0].media.size(); ++m) {
+    double path = std::numeric_limits<double>::infinity(), fading = path;
+    for (const Scene& scene : scenes) {
+      Medium medium = scene.media[m];
+      medium.profile = ProfileKind::dipole;  // classical D, as in the diffusion equation
+      const DiffuseProfile profile = make_diffuse_profile(medium);
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (!(profile.total[c] > 0 && profile.mean_free_path[c] > 0)) continue;
+        path = std::min(path, profile.mean_free_path[c]);
+        if (profile.diffuse_mean_free_path[c] > 0)
+          fading = std::min(fading, profile.diffuse_mean_free_path[c]);
+      }
+    }
+    for (Scene& scene : scenes) {
+      if (std::isfinite(path)) scene.media[m].shortest_path = path;
+      if (std::isfinite(fading)) scene.media[m].shortest_fading = fading;
+    }
+  }
 }
 
 /// A scene with spectra is read once for each group of wavelengths.
@@ -207,11 +220,7 @@ Scene read_at_wavelengths(const Document& document) {
     scenes.push_back(read_scene(resolved));
     scenes.back().wavelengths = wavelengths;
   }
-  for (std::size_t m = 0; m < scenes[0].media.size(); ++m) {
-    double densest = std::numeric_limits<double>::infinity();
-    for (const Scene& scene : scenes) densest = std::min(densest, smallest_mean_free_path(scene.media[m]));
-    for (Scene& scene : scenes) scene.media[m].densest = std::isfinite(densest) ? densest : 0;
-  }
+  share_lengths(scenes);
   Scene first = std::move(scenes[0]);
   first.other_wavelengths.assign(std::make_move_iterator(scenes.begin() + 1),
                                  std::make_move_iterator(scenes.end()));

@@ -72,19 +72,6 @@ PhysicalMedium read_physical(const ObjectReader& medium) {
   return result;
 }
 
-/// Returns the texture's mean and normalises its texels by it.
-Rgb take_mean(Texture& texture) {
-  const Texel texel = texture.file->mean();
-  const Rgb mean = at_wavelengths(texture, {texel[0], texel[1], texel[2]});
-  Rgb taken;
-  for (std::size_t c = 0; c < 3; ++c) {
-    taken[c] = std::max(0., mean[c]) * texture.scale[c];
-    texture.scale[c] = mean[c] > 0 ? 1 / mean[c] : 1;
-  }
-  texture.is_relative = true;
-  return taken;
-}
-
 /// Uses the mean colour of a texture for the medium, and the relative texels as a tint.
 void take_color(const Value& value, ArtistMedium& coefficients, Medium& medium) {
   read_textured(value, coefficients.subsurface_color, medium.tint_texture);

@@ -62,6 +62,24 @@ void mix_channels(const Value& value, TexturePart part, Texture& texture) {
   }
 }
 
+Texture read_texture(const Value& value, TexturePart part);
+
+/// Colours are normalised by their mean; constant ones have no effect.
+void read_details(const Value& details, const Value& owner, TexturePart part, Texture& texture) {
+  const bool is_normal = part == TexturePart::triple && owner.info().type == ValueType::object;
+  if (part != TexturePart::color && !is_normal)
+    details.fail_key("applies to colours and normal maps", "a texture without it");
+  for (const Value& one : details.list()) {
+    Texture detail = read_texture(one, part);
+    if (!detail.details.empty()) one.fail("has details of its own", "a list of one level");
+    if (!is_normal) {
+      if (detail.file->constant()) continue;
+      take_mean(detail);
+    }
+    texture.details.push_back(std::move(detail));
+  }
+}
+
 Texture read_texture(const Value& value, TexturePart part) {
   const ObjectReader reader(value, "texture");
   Texture texture;
@@ -85,6 +103,7 @@ Texture read_texture(const Value& value, TexturePart part) {
   if (const auto uv_scale = reader.find("uv_scale")) texture.uv_scale = read_pair(*uv_scale);
   if (const auto rotation = reader.find("uv_rotation")) texture.uv_rotation = rotation->number();
   if (const auto offset = reader.find("uv_offset")) texture.uv_offset = read_pair(*offset);
+  if (const auto details = reader.find("detail")) read_details(*details, value, part, texture);
   return texture;
 }
 
@@ -117,10 +136,22 @@ void read_textured(const Value& value, Vec3d& triple, std::optional<Texture>& te
   if (!is_texture(value)) return;
   texture = read_texture(value, is_color ? TexturePart::color : TexturePart::triple);
   const std::optional<Texel>& constant = texture->file->constant();
-  if (!constant) return;
+  if (!constant || !texture->details.empty()) return;
   const Rgb color = at_wavelengths(*texture, {(*constant)[0], (*constant)[1], (*constant)[2]});
   for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, *texture, color[c] * texture->scale[c]);
   texture.reset();
+}
+
+Rgb take_mean(Texture& texture) {
+  const Texel texel = texture.file->mean();
+  const Rgb mean = at_wavelengths(texture, {texel[0], texel[1], texel[2]});
+  Rgb taken;
+  for (std::size_t c = 0; c < 3; ++c) {
+    taken[c] = std::max(0., mean[c]) * texture.scale[c];
+    texture.scale[c] = mean[c] > 0 ? 1 / mean[c] : 1;
+  }
+  texture.is_relative = true;
+  return taken;
 }
 
 Texture read_normal_map(const Value& value) {

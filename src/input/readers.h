@@ -23,6 +23,8 @@ struct ShapeContext {
 void read_textured(const Value& value, double& number, std::optional<Texture>& texture);
 /// The same for a colour, or a number for each of R, G and B; texels of the latter are linear by default.
 void read_textured(const Value& value, Vec3d& triple, std::optional<Texture>& texture);
+/// Returns the mean of a texture's colours, and divides its texels by it.
+Rgb take_mean(Texture& texture);
 Texture read_normal_map(const Value& value);
 /// Height map with its scale in mm; none: flat.
 std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);

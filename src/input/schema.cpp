@@ -215,6 +215,9 @@ std::vector<KeyInfo> texture_rows() {
           "rotates the UVs about that corner, after `uv_scale`"),
       row("texture", "uv_offset", list, "", kFiniteNumber, "[0, 0]",
           "moves the UVs right and down, after `uv_rotation`"),
+      row("texture", "detail", list, "", kFiniteNumber, "none",
+          "colours and normal maps: textures of finer detail, such as pores. A colour is multiplied by each "
+          "texel over the mean of its texture; normals are tilted further"),
   };
 }
 

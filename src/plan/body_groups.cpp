@@ -17,7 +17,7 @@ namespace {
 
 /// 0: of no channel scattering is it longer.
 double smallest_mean_free_path(const DiffuseProfile& profile, const Medium& medium) {
-  double smallest = medium.densest > 0 ? medium.densest : INFINITY;
+  double smallest = medium.shortest_path > 0 ? medium.shortest_path : INFINITY;
   for (std::size_t c = 0; c < 3; ++c)
     if (profile.total[c] > 0 && profile.mean_free_path[c] > 0)
       smallest = std::min(smallest, profile.mean_free_path[c]);

@@ -43,11 +43,10 @@ double seconds_of_shading(const Scene& scene, const Lighting& lighting) {
 
 double expected_seconds(const Scene& scene, const Plan& plan) {
   const Lighting lighting = lighting_of(scene);
-  double seconds = kTriangle * double(plan.triangles) + seconds_of_shading(scene, lighting) +
-                   seconds_of_bounces(scene, plan, lighting);
+  double seconds = seconds_of_shading(scene, lighting) + seconds_of_bounces(scene, plan, lighting);
   for (const BodyPlan& group : plan.groups)
     seconds += method_of(group.method).seconds(scene, group, lighting);
-  return seconds;
+  return kTriangle * double(plan.triangles) + seconds * double(1 + scene.other_wavelengths.size());
 }
 
 }  // namespace opaline

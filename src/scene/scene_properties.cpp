@@ -33,7 +33,9 @@ int bounces_of(const Scene& scene) {
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) {
   std::vector<const Texture*> textures;
   const auto add = [&](const auto&, const std::optional<Texture>& texture, SurfacePart) {
-    if (texture) textures.push_back(&*texture);
+    if (!texture) return;
+    textures.push_back(&*texture);
+    for (const Texture& detail : texture->details) textures.push_back(&detail);
   };
   for_each_textured(shape, add);
   if (shape.medium) for_each_textured(scene.media[*shape.medium], add);

@@ -27,8 +27,10 @@ constexpr const char* kTheMinimum = "the minimum";
 // one mean free path. SplitKernel takes transport below the spacing from the irradiance at the shading point
 // itself. Where diffuse light decays faster, the exitance in shadow depends on the exact sample positions, so
 // the spacing follows the decay.
-double widest_spacing(const DiffuseProfile& profile) {
-  double widest = INFINITY;
+double widest_spacing(const Medium& medium) {
+  const DiffuseProfile profile = make_diffuse_profile(medium);
+  const double path = medium.shortest_path, fading = medium.shortest_fading;
+  double widest = path > 0 ? std::clamp(fading > 0 ? fading : path, path, 1.5 * path) : INFINITY;
   for (std::size_t c = 0; c < 3; ++c) {
     const double length = profile.mean_free_path[c];
     if (profile.total[c] > 0 && length > 0)
@@ -56,7 +58,7 @@ std::optional<double> set_samples(const Settings& settings, double area) {
 double shortest_fading(Medium medium) {
   medium.profile = ProfileKind::dipole;  // classical D, as in the diffusion equation
   const DiffuseProfile profile = make_diffuse_profile(medium);
-  double shortest = INFINITY;
+  double shortest = medium.shortest_fading > 0 ? medium.shortest_fading : INFINITY;
   for (std::size_t c = 0; c < 3; ++c)
     if (profile.total[c] > 0 && !is_local(profile, c))
       shortest = std::min(shortest, profile.diffuse_mean_free_path[c]);
@@ -72,7 +74,7 @@ double fewest_samples(std::size_t bodies) {
 void choose_samples(const Scene& scene, double fewest, BodyPlan& group, std::vector<std::string>& warnings) {
   const Settings& settings = scene.settings;
   const double mean_free_path = group.smallest_mean_free_path,
-               spacing = widest_spacing(make_diffuse_profile(scene.media[group.medium]));
+               spacing = widest_spacing(scene.media[group.medium]);
   // Without a mean free path, light leaves where it enters, and no samples are necessary.
   const double wanted = std::isfinite(spacing) ? group.area / (spacing * spacing) : fewest;
   double count = set_samples(settings, group.area).value_or(std::max(wanted, fewest));

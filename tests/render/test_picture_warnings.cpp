@@ -10,7 +10,7 @@ namespace opaline::test {
 namespace {
 
 /// A marble ball of 10 mm, well lit, in the middle of the picture.
-Scene lit_ball() {
+Scene ball_in_light() {
   Scene scene = single_shape(SphereShape{{}, 10}, marble(), 300);
   scene.lights = {point_light({30, 40, 80}, Rgb(2e4))};
   return scene;
@@ -36,7 +36,7 @@ void expect_warning(const Scene& scene, const std::vector<std::string>& parts) {
 // Claim: the scenes of the repository, and a ball lit well, call for no words about their pictures. Source:
 // picture_warnings.h. Fails if: a threshold is drawn too near to what usual pictures have.
 TEST(PictureWarnings, GoodScenesHaveNone) {
-  EXPECT_TRUE(warnings_of(lit_ball()).empty());
+  EXPECT_TRUE(warnings_of(ball_in_light()).empty());
   for (const char* name : {"bunny-marble", "bunny-skin1", "sphere", "backlit-slab"}) {
     const std::vector<std::string> small{"film.resolution=[64,64]", "settings.samples=3000",
                                          "settings.light_samples=8"};
@@ -52,24 +52,24 @@ TEST(PictureWarnings, GoodScenesHaveNone) {
 // the camera; seen at 90 degrees from its side; 20 mm at 1e7 mm are 2e-4 pixels of 32 under 40 degrees, and
 // fill them from sqrt(3) 10 mm / sin 20 degrees. Fails if: lengths are printed in mm, or a crop beside the ball is taken for a bad camera.
 TEST(PictureWarnings, NothingInView) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   scene.camera.look_at = {0, 0, 200};
   expect_warning(scene, {"no shape is visible", "behind the camera", "camera.look_at=[0,0,0]"});
   scene.mm_per_unit = 10;
   expect_warning(scene, {"between [-1,-1,-1] and [1,1,1] (scene units)"});
-  scene = lit_ball();
+  scene = ball_in_light();
   scene.camera.look_at = {100, 0, 100};
   expect_warning(scene, {"90 degrees from the view direction"});
-  scene = lit_ball();
+  scene = ball_in_light();
   scene.camera.position = {0, 0, 1e7};
   expect_warning(scene,
                  {"no shape is visible", "pixels wide", "--set camera.position=[0,0,50.64] shows them"});
-  scene = lit_ball();
+  scene = ball_in_light();
   scene.film.crop = {{0, 0, 4, 4}};
   expect_warning(scene, {"no shape is visible in the crop", "around the pixel 16,16 of 32 x 32"});
   scene.camera.look_at = {36.397, 0, 0};  // 20 degrees beside the ball, which is half the view
   expect_warning(scene, {"around the pixel 0,16 of 32 x 32"});
-  scene = lit_ball();
+  scene = ball_in_light();
   scene.lights.push_back({"lamp", SphereLight{{0, 0, 70}, 15, Rgb(5)}});
   expect_warning(scene, {"no shape is visible", "behind a light"});
 }
@@ -77,7 +77,7 @@ TEST(PictureWarnings, NothingInView) {
 // Claim: a camera inside a translucent body is told of; one before it, or inside an opaque room, is not. Source: normals
 // point outwards. Fails if: the side is told by the sign of the depth, or an opaque sheet's turned normal counts.
 TEST(PictureWarnings, CameraInsideABody) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   scene.camera.position = {0, 0, 5};
   scene.camera.look_at = {};
   expect_warning(scene, {"the back side of a translucent surface", "inside the body"});
@@ -92,7 +92,7 @@ TEST(PictureWarnings, CameraInsideABody) {
 // front, or opaque, it is not. Source: picture_warnings.h. Fails if: only most of the image counts, or the sheet is taken for a
 // camera inside a body.
 TEST(PictureWarnings, SheetSeenFromBehind) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   scene.shapes[0].source = QuadShape{{-10, -10, 0}, {0, 20, 0}, {20, 0, 0}};
   scene.shapes.push_back(scene.shapes[0]);
   scene.shapes[1].name = "floor";
@@ -116,7 +116,7 @@ TEST(PictureWarnings, SheetSeenFromBehind) {
 // Claim: smooth normals that look away at sharp edges are no backs, neither of a translucent nor of an opaque cube. Fails if: a
 // few pixels count.
 TEST(PictureWarnings, SmoothEdgesAreNoBacks) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   scene.shapes[0].source = BoxShape{{-8, -8, -8}, {8, 8, 8}};
   scene.shapes[0].normals = NormalMode::smooth;
   scene.camera.position = {20, 12, 30};
@@ -134,7 +134,7 @@ TEST(PictureWarnings, SmoothEdgesAreNoBacks) {
 // degrees, and meets it by one of 6; the cone of 5 degrees meets the inside of a triangle whose corners are 60 degrees away. Fails if:
 // the box stands for the shape, one light's warning hides another's, or corners stand for a triangle.
 TEST(PictureWarnings, EachLightThatReachesNoSurface) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   const QuadLight away{{-60, -20, 60}, {40, 0, 0}, {0, 40, 0}, Rgb(5)};
   const QuadLight corner{{8, 8, 5}, {-4, 4, 0}, {-2, -2, 4}, Rgb(5)};
   scene.lights.push_back({"away", away});
@@ -146,7 +146,7 @@ TEST(PictureWarnings, EachLightThatReachesNoSurface) {
 
   const double radians = std::numbers::pi / 180;
   SpotLight spot{{0, 0, 60}, {std::sin(15 * radians), 0, -std::cos(15 * radians)}, Rgb(5e4), 5};
-  scene = lit_ball();
+  scene = ball_in_light();
   scene.lights.push_back({"spot", spot});
   expect_warning(scene, {"the light spot reaches no surface", "its cone misses all shapes"});
   spot.outer_angle = 6;
@@ -163,7 +163,7 @@ TEST(PictureWarnings, EachLightThatReachesNoSurface) {
 // Source: picture_warnings.h. Fails if: a lamp that shines past a shape is taken for one that is turned away
 // (u x v along +z from behind the ball lights it).
 TEST(PictureWarnings, LightsThatLightNothing) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   const QuadLight lamp{{-60, -20, 60}, {40, 0, 0}, {0, 40, 0}, Rgb(5)};
   scene.lights.push_back({"lamp", lamp});
   expect_warning(scene, {"the light lamp reaches no surface", "exchange u and v"});
@@ -191,7 +191,7 @@ TEST(PictureWarnings, LightsThatLightNothing) {
 // Tolerance: one stop. Fails if: the scene's own exposure is left out, or the hint at the unit stands under a
 // sun, which has no distance.
 TEST(PictureWarnings, TooDarkOrTooBrightForTheExposure) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   scene.lights = {point_light({30, 40, 80}, Rgb(2e4 / 4096))};
   expect_warning(scene, {"almost black", "--exposure 1"});
   scene.film.exposure = 12;
@@ -202,7 +202,7 @@ TEST(PictureWarnings, TooDarkOrTooBrightForTheExposure) {
   scene.film.exposure = 0;
   expect_warning(scene, {"half of the object is overexposed (", "x white); use --exposure -"});
 
-  scene = lit_ball();
+  scene = ball_in_light();
   scene.mm_per_unit = 1000;
   scene.lights = {point_light({30, 40, 80}, Rgb(2e-2))};
   expect_warning(
@@ -216,7 +216,7 @@ TEST(PictureWarnings, TooDarkOrTooBrightForTheExposure) {
 // Claim: an image with a small bright part is neither black nor too dark. By hand: a cone of 2 degrees at 30 mm is a
 // spot of 2 mm, which is 1 of 1,024 pixels of 2.3 mm. Fails if: the spot is left out of the maximum.
 TEST(PictureWarnings, SmallBrightParts) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   scene.shapes[0].source = QuadShape{{-50, -50, 0}, {100, 0, 0}, {0, 100, 0}};
   scene.shapes[0].medium.reset();
   scene.lights = {{"spot", SpotLight{{1, 1, 30}, {0, 0, -1}, Rgb(30000), 2}}};
@@ -228,10 +228,10 @@ TEST(PictureWarnings, SmallBrightParts) {
 // Claim: an image that is black for its surfaces says which: a tint or reflectance of 0, or a metal with nothing to show. Source:
 // picture_warnings.h. Fails if: the lights are blamed.
 TEST(PictureWarnings, BlackSurfaces) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   scene.media[0].tint = Rgb(0);
   expect_warning(scene, {"the object is black: the colour of the medium", "is 0"});
-  scene = lit_ball();
+  scene = ball_in_light();
   scene.shapes[0].medium.reset();
   scene.shapes[0].reflectance = Rgb(0);
   expect_warning(scene, {"the object is black: the reflectance of", "is 0"});
@@ -243,7 +243,7 @@ TEST(PictureWarnings, BlackSurfaces) {
 // Claim: advice for shapes around the camera leads to an image that shows them. Source: the warning itself. Fails if: it is to
 // look where the camera looks already.
 TEST(PictureWarnings, AdviceAroundTheCamera) {
-  Scene scene = lit_ball();
+  Scene scene = ball_in_light();
   scene.shapes.push_back(scene.shapes[0]);
   scene.shapes[0].source = SphereShape{{0, 0, 80}, 5};
   scene.shapes[1].source = SphereShape{{0, 0, -80}, 5};

@@ -70,9 +70,13 @@ TEST(SceneSpectra, Number) {
       3);
   EXPECT_EQ(number(R"({"film": {"wavelengths": 21}})"), 21);
   const Scene scene = parse(with_medium(blood()));
-  for (const Scene& other : scene.other_wavelengths)
-    EXPECT_EQ(other.media[0].densest, scene.media[0].densest);
-  EXPECT_GT(scene.media[0].densest, 0);
+  for (const Scene& other : scene.other_wavelengths) {
+    EXPECT_EQ(other.media[0].shortest_path, scene.media[0].shortest_path);
+    EXPECT_EQ(other.media[0].shortest_fading, scene.media[0].shortest_fading);
+  }
+  EXPECT_GT(scene.media[0].shortest_path, .2);
+  EXPECT_LT(scene.media[0].shortest_path, .6);
+  EXPECT_LT(scene.media[0].shortest_fading, scene.media[0].shortest_path);
 }
 
 // Claim: mistakes in spectra are named at their place. Source: by hand. Fails if: one is accepted, or a number of the file has no line.

@@ -257,6 +257,7 @@ std::vector<Change> changes() {
        "settings.cell_size=2.5",
        {cells[0], cells[1], "settings.max_samples=300", "media.wax.texture_mix=medium",
         R"(media.wax.subsurface_color={"texture": "cells.png"})"}},
+      {"texture.detail", texture(R"("detail": [{"texture": "other.png"}])")},
       {"spectrum.nm", R"(media.stone.sigma_a={"nm": [450, 700], "values": [0.1, 0.01]})", spectrum},
       {"spectrum.values", R"(media.stone.sigma_a={"nm": [400, 700], "values": [0.1, 0.02]})", spectrum},
       {"spectrum.spectrum", R"(media.stone.sigma_a={"spectrum": "blood.txt"})", spectrum},

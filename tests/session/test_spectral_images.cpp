@@ -81,6 +81,62 @@ TEST(SpectralImages, SmoothMedium) {
   }
 }
 
+// Claim: colours of textures in white light, of vertices and of an environment on a grey body stay those of the image in red, green and blue.
+// Source: the spectra of these colours return them exactly. Tolerance: 2e-3 of the brightest value, as textures are halves; in
+// the environment, sampled by other brightness, 5e-3 of the sums and 5e-2 of a pixel.
+// Fails if: a texture, its mean as a medium, a vertex colour or an environment is read as values at wavelengths.
+TEST(SpectralImages, TexturesAndEnvironments) {
+  const ScratchFolder folder;
+  put_exr(folder.file("paint.exr"), 8, 8, [](int x, int y) {
+    return std::array<double, 3>{.3 + .06 * x, .6 - .04 * y, .35 + .03 * (x ^ y)};
+  });
+  put_exr(folder.file("room.exr"), 16, 8, [](int x, int y) {
+    return std::array<double, 3>{1 + .1 * x, .9 + .1 * y, 1.5 - .05 * x};
+  });
+  put_bytes(folder.file("sheet.ply"),
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+            "z\nproperty float red\n"
+            "property float green\nproperty float blue\nelement face 1\nproperty list uchar int "
+            "vertex_indices\nend_header\n"
+            "-20 -8 0 .5 .3 .4\n-20 -8 20 .3 .5 .4\n-9 -8 20 .4 .4 .6\n-9 -8 0 .6 .5 .4\n4 0 1 2 3\n");
+  const auto text = [&](const std::string& light, const std::string& film) {
+    const bool is_room = light.find("room") != std::string::npos;
+    return R"({"media": {"m": {"subsurface_color": )" +
+           std::string(is_room ? "0.6" : R"({"texture": "paint.exr"})") +
+           R"(, "subsurface_radius": 0.2, "specular_ior": 1}},
+      "shapes": [{"sphere": {"radius": 8}, "medium": "m"}, {"file": "sheet.ply"},
+                 {"quad": {"corner": [10, -8, 20], "u": [10, 0, 0], "v": [0, 0, -20]},
+                  "reflectance": )" +
+           (is_room ? "0.5" : R"({"texture": "paint.exr", "scale": [0.9, 1, 0.8]})") + R"(}],
+      "lights": [)" +
+           light + R"(], "camera": {"position": [0, 12, 40], "look_at": [0, -1, 0]},
+      "film": {"resolution": [32, 32], "pixel_type": "float")" +
+           film + R"(}, "settings": {"method": "lambert", "bounces": 0}})";
+  };
+  for (const char* light : {R"({"type": "directional", "direction": [0.2, -1, -0.5], "irradiance": 3})",
+                            R"({"type": "environment", "file": "room.exr"})"})
+    for (const char* film : {R"(, "wavelengths": 3)", R"(, "wavelengths": 12)"}) {
+      SCOPED_TRACE(std::string(light) + film);
+      const Image rgb = picture_of(folder, text(light, "")), spectral = picture_of(folder, text(light, film));
+      const bool is_room = std::string(light).find("room") != std::string::npos;
+      double largest = 0, size = 0;
+      for (const char* layer : {"R", "G", "B", "albedo.R", "albedo.B"}) {
+        double sum = 0, of_rgb = 0;
+        for (int y = 0; y < 32; ++y)
+          for (int x = is_room ? 11 : 0; x < 32; ++x) {  // not the coloured sheet in coloured light
+            const auto expected = double(channel(rgb, x, y, layer)),
+                       got = double(channel(spectral, x, y, layer));
+            sum += got;
+            of_rgb += expected;
+            size = std::max(size, expected);
+            largest = std::max(largest, std::abs(expected - got));
+          }
+        EXPECT_NEAR(sum / of_rgb, 1, is_room ? 5e-3 : 1e-3) << layer;
+      }
+      EXPECT_LT(largest / size, is_room ? 5e-2 : 2e-3);
+    }
+}
+
 // Claim: a session with several groups of wavelengths renders a cold session's image again after an edit of the camera, keeps its scene, and the
 // lights' layers sum to the image. Source: docs of Session; light_groups.h. Tolerance: bit-equal; 1e-5. Fails if: the last group's
 // scene remains, or dark lights shine at other wavelengths.
