@@ -228,6 +228,21 @@ void warn_of_unused_colors(const Scene& scene, const World& world, std::vector<s
   }
 }
 
+/// Peak memory of a scene at all its wavelengths: each three are prepared while about half of the results of the
+/// ones before remain.
+/// in    first: of the first three; without_bodies: part of it for the meshes and the image
+std::size_t most_bytes(const Scene& scene, const World& world, std::size_t first,
+                       std::size_t without_bodies) {
+  std::size_t most = first;
+  for (Scene other : scene.other_wavelengths) {
+    other.camera = scene.camera;
+    other.film = scene.film;
+    other.settings = scene.settings;
+    most = std::max(most, make_plan(other, world).bytes);
+  }
+  return most + (most - without_bodies) / 2;
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const World& world) {
@@ -264,6 +279,7 @@ Plan make_plan(const Scene& scene, const World& world) {
              mesh.colors.size() * sizeof(CornerColors));
   }
   plan.bytes += picture_bytes(scene, environments);
+  const std::size_t without_bodies = plan.bytes;
   std::size_t samples = 0;
   double temporary = 0;  // one body after the other
   const PlanningInput planning{scene, world, lights, fewest_samples(plan.groups.size())};
@@ -286,6 +302,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   if (samples > 0 && scene.film.samples_per_pixel > 1) plan.bytes += 5'000'000;
   plan.bytes += bytes_of_bounce_places(scene, seen);
   plan.bytes += std::size_t(temporary);
+  if (!scene.other_wavelengths.empty()) plan.bytes = most_bytes(scene, world, plan.bytes, without_bodies);
   plan.rays = cheaper_build(scene, lights, plan);
   list_stages(scene, lights, plan);
   return plan;

@@ -58,7 +58,7 @@ std::optional<double> set_samples(const Settings& settings, double area) {
 double shortest_fading(Medium medium) {
   medium.profile = ProfileKind::dipole;  // classical D, as in the diffusion equation
   const DiffuseProfile profile = make_diffuse_profile(medium);
-  double shortest = medium.shortest_fading > 0 ? medium.shortest_fading : INFINITY;
+  double shortest = INFINITY;
   for (std::size_t c = 0; c < 3; ++c)
     if (profile.total[c] > 0 && !is_local(profile, c))
       shortest = std::min(shortest, profile.diffuse_mean_free_path[c]);
