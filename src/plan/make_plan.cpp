@@ -75,12 +75,14 @@ void check_bounces(const Scene& scene) {
       "--set settings.bounces=0, or --method volume_diffusion");
 }
 
-/// Memory of the image's points gathering bounced light, more of them in corners; bench_plan. None for
-/// methods tracing paths instead.
-std::size_t bytes_of_bounce_places(const Scene& scene, std::size_t seen) {
-  constexpr std::size_t kRaysOfThreads = 8'000'000, kPlaces = 22'000'000, kPixel = 300;
+/// Memory of the image's points gathering bounced light, more of them in corners, and of rays from samples;
+/// bench_plan. None for methods tracing paths instead.
+std::size_t bytes_of_bounces(const Scene& scene, std::size_t seen, std::size_t samples) {
+  constexpr std::size_t kRaysOfThreads = 8'000'000, kPlaces = 22'000'000, kPixel = 300,
+                        kAtSamples = 16'000'000, kSample = 250;
   const bool has_places = bounces_of(scene) > 0 && method_of(scene.settings.method).separates_lights();
-  return has_places ? kRaysOfThreads + std::min(kPlaces, kPixel * seen) : 0;
+  if (!has_places) return 0;
+  return kRaysOfThreads + std::min(kPlaces, kPixel * seen) + std::min(kAtSamples, kSample * samples);
 }
 
 /// Text for a medium with textures that could vary inside a body; else empty.
@@ -300,7 +302,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   // with about as many points as pixels at its finest level, and surface caches, finer at higher resolution.
   plan.bytes += std::min(60 * seen, 500 * samples);
   if (samples > 0 && scene.film.samples_per_pixel > 1) plan.bytes += 5'000'000;
-  plan.bytes += bytes_of_bounce_places(scene, seen);
+  plan.bytes += bytes_of_bounces(scene, seen, samples);
   plan.bytes += std::size_t(temporary);
   if (!scene.other_wavelengths.empty()) plan.bytes = most_bytes(scene, world, plan.bytes, without_bodies);
   plan.rays = cheaper_build(scene, lights, plan);

@@ -13,7 +13,7 @@ namespace {
 
 // Bytes, fitted to bench_plan at 1 and 10 million samples: samples, weights and tree while its nodes are
 // written; per further light, weights; with bounces; in needles, on a ring 1e5 times thinner than wide.
-constexpr std::size_t kBytesOfSample = 205, kBytesOfLight = 4, kBytesOfBounces = 330;
+constexpr std::size_t kBytesOfSample = 205, kBytesOfLight = 4, kBytesOfBounces = 200;
 constexpr double kBytesOfNeedle = 250;
 
 /// Warns of a body thinner than its sample spacing.

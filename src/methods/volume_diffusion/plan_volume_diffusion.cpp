@@ -103,19 +103,23 @@ void VolumeDiffusionMethod::plan(const PlanningInput& input, BodyPlan& body,
 BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyPlan& body) const {
   // Bytes, fitted to bench_plan: per cell cutting the surface, exitance and error during the fits; per light,
   // weights; with bounces, weights for a second fit, the fit, and the gathered light.
-  constexpr std::size_t kCutSample = 640, kLight = 4, kBounces = 420;
+  constexpr std::size_t kCutSample = 680, kLight = 4, kBounces = 420;
   constexpr double kVaryingCell = 350;  // its own medium, and the flux to each neighbour
   const double in_wires =
       body.thickness > 0 ? 1.2 * needle_fraction(input.world, body) * body.cell / body.thickness : 0;
   // The cells cutting a surface are as many as those of its projections along the axes; fitted to spheres.
   constexpr double kProjectedOfSphere = 1.5;
   const double of_sphere = projected_area(input.world, body) / kProjectedOfSphere;
+  // Of a thin body, most cells are between its sides.
+  constexpr double kThin = 4;
+  const bool is_thin = body.thickness > 0 && body.thickness < kThin * body.cell;
   BodyMemory memory;
   memory.kept +=
-      std::size_t(std::max(of_sphere, in_wires) * double(body.samples)) *
+      std::size_t(std::max(is_thin ? 1 : of_sphere, in_wires) * double(body.samples)) *
       (kCutSample + kLight * input.lights.size() + (gathers_light(input.scene, body) ? kBounces : 0));
-  memory.kept += std::size_t((kBytesOfCell + (varies(input.scene, body) ? kVaryingCell : 0)) *
-                             expected_cells(body.area, body.thickness, body.cell) * of_sphere);
+  memory.kept +=
+      std::size_t((kBytesOfCell + (varies(input.scene, body) ? kVaryingCell : 0)) *
+                  expected_cells(body.area, body.thickness, body.cell) * (is_thin ? 1 : of_sphere));
   return memory;
 }
 
