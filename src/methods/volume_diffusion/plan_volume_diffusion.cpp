@@ -110,7 +110,7 @@ BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyP
   // The cells cutting a surface are as many as those of its projections along the axes; fitted to spheres.
   constexpr double kProjectedOfSphere = 1.5;
   const double of_sphere = projected_area(input.world, body) / kProjectedOfSphere;
-  // Of a thin body, most cells are between its sides.
+  // Thin bodies have most cells between their sides.
   constexpr double kThin = 4;
   const bool is_thin = body.thickness > 0 && body.thickness < kThin * body.cell;
   BodyMemory memory;
