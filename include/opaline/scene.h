@@ -161,7 +161,8 @@ struct Medium {
   NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< for ProfileKind::normalized_diffusion
   Grain grain{};                                               ///< grain of the boundary
   std::vector<MediumLayer> layers{};                           ///< empty: homogeneous, or by its textures
-  /// Shortest mean free path and diffuse mean free path of all wavelengths, mm; 0: none shorter than these.
+  /// Shortest mean free path and diffuse mean free path at all wavelengths of a spectral image, mm; 0: a medium
+  /// in red, green and blue.
   double shortest_path = 0, shortest_fading = 0;
   friend bool operator==(const Medium&, const Medium&) = default;
 };

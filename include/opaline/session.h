@@ -125,7 +125,7 @@ class Session {
   /// it.
   /// in    body: index of a translucent shape or group, in the order of the scene; points: world space, mm;
   ///       normals: unit, outward, one per point
-  /// out   M_o in W/mm^2, one per point
+  /// out   M_o in W/mm^2, one per point; with spectra, at the first three wavelengths
   /// error as prepare; Error{bad_input}: no such body, or a method without bodies
   std::vector<RgbF> radiant_exitance(std::size_t body, std::span<const Vec3d> points,
                                      std::span<const Vec3f> normals);

@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "assets/text_lines.h"
 #include "core/lower_case.h"
+#include "core/text_lines.h"
 #include "geometry/formats/obj_material.h"
 #include "values/nearest_name.h"
 

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <optional>
 
-#include "assets/text_lines.h"
+#include "core/text_lines.h"
 
 namespace opaline {
 namespace {

@@ -48,10 +48,7 @@ RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
     for (std::size_t c = 0; c < 3; ++c) texel[c] = float(mixed[c]);
   }
   RgbF color;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float value = std::max(0.0f, texel[c]) * float(texture.scale[c]);
-    color[c] = value;
-  }
+  for (std::size_t c = 0; c < 3; ++c) color[c] = std::max(0.0f, texel[c]) * float(texture.scale[c]);
   for (const Texture& detail : texture.details) color = color * color_of(detail, place);
   return texture.is_relative ? color : component_min(color, RgbF(1));
 }

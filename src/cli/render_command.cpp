@@ -188,10 +188,12 @@ void check_method_options(const RenderArguments& arguments, const Scene& scene) 
       !arguments.resume.empty() ||
       (method == Method::direct && (arguments.time_budget || scene.settings.until_error));
   if (accumulates && !scene.other_wavelengths.empty())
-    throw Error(ErrorKind::bad_input, {}, 0, 0,
-                "a spectral image of more than three wavelengths cannot be continued, or stop at an error",
-                "--set film.wavelengths=3, or --entry-samples N",
-                fmt::format("{} wavelengths", 3 * (1 + scene.other_wavelengths.size())));
+    throw Error(
+        ErrorKind::bad_input, {}, 0, 0,
+        "a spectral image of more than three wavelengths has no sums to continue, and cannot stop at an "
+        "error or a time",
+        "--set film.wavelengths=3, or --entry-samples N",
+        fmt::format("{} wavelengths", 3 * (1 + scene.other_wavelengths.size())));
   if (method == Method::direct || scene.lights.empty()) return;
   const auto no_use = [&](const char* option, const char* methods) {
     return Error(ErrorKind::bad_input, {}, 0, 0, std::string(option) + " has no effect with this method",

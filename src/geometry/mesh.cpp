@@ -25,11 +25,12 @@ double enclosed_volume(const Mesh& mesh) {
 
 MeshMeasures measures_of(const Mesh& mesh) {
   constexpr double kSlender = 32;
-  MeshMeasures measures{surface_area(mesh), enclosed_volume(mesh), {}, 0};
+  MeshMeasures measures{.area = surface_area(mesh), .volume = enclosed_volume(mesh)};
   for (const auto& [i, j, k] : mesh.triangles) {
     const Vec3d ij = mesh.positions[j] - mesh.positions[i], ik = mesh.positions[k] - mesh.positions[i],
                 jk = ik - ij, n = cross(ij, ik);
     const double twice_area = length(n);
+    measures.projected_area += (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)) / 2;
     if (std::max({dot(ij, ij), dot(ik, ik), dot(jk, jk)}) > kSlender * twice_area)
       measures.needle_area += twice_area / 2;
     if (!(twice_area > 0)) continue;

@@ -62,6 +62,8 @@ struct MeshMeasures {
   std::array<double, 6> normal_products{};
   /// Area of needles: triangles with a squared longest side above 64 times their area.
   double needle_area = 0;
+  /// Sum of the areas of the triangles projected along the three axes.
+  double projected_area = 0;
 };
 MeshMeasures measures_of(const Mesh& mesh);
 

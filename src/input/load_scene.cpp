@@ -186,7 +186,7 @@ Scene read_scene(const Document& document) {
   return scene;
 }
 
-/// Sets the shortest lengths of the media, for the same samples and cells at all wavelengths.
+/// Sets the shortest lengths of the media, for the same samples at all wavelengths.
 void share_lengths(std::span<Scene> scenes) {
   for (std::size_t m = 0; m < scenes[0].media.size(); ++m) {
     double path = std::numeric_limits<double>::infinity(), fading = path;

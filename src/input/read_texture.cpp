@@ -58,7 +58,8 @@ void mix_channels(const Value& value, TexturePart part, Texture& texture) {
     texture.scale = Vec3d(1);
   } else if (part == TexturePart::triple && value.info().type == ValueType::number_or_triple &&
              wavelengths.bands[0][0] != wavelengths.bands[0][1]) {
-    value.fail("has red, green and blue for more than three wavelengths", "\"film\": {\"wavelengths\": 3}");
+    value.fail("is a texture of lengths in red, green and blue, in a scene of more than three wavelengths",
+               "\"film\": {\"wavelengths\": 3}");
   }
 }
 

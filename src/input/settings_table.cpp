@@ -10,6 +10,7 @@
 
 #include "input/key_rows.h"
 #include "scene/names.h"
+#include "spectra/wavelengths.h"
 
 namespace opaline {
 namespace {
@@ -188,12 +189,10 @@ std::span<const Member<Film>> film_members() {
                                  "colour space of the EXR: `\"lin_rec709\"`: that of the scene; "
                                  "`\"acescg\"`: converted to ACEScg (AP1)"),
       member<&Film::wavelengths>(
-          "wavelengths", whole_number, "", {3, 60},
+          "wavelengths", whole_number, "", {kFewestWavelengths, kMostWavelengths},
           "the fewest for the scene's spectra, with colours within 1 %; without spectra, "
           "red, green and blue",
-          {view, view_near, surfaces},
-          "number of wavelengths of spectra, a multiple of 3; the image takes a third of "
-          "it times the time"),
+          {}, "number of wavelengths of spectra, a multiple of 3; each three take the time of an image"),
   };
   return table;
 }

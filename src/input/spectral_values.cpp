@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -13,8 +12,8 @@
 #include <vector>
 
 #include "core/input_file.h"
+#include "core/text_lines.h"
 #include "diffusion/dipole.h"
-#include "input/presets.h"
 #include "input/schema.h"
 #include "opaline/error.h"
 #include "spectra/cie_tables.h"
@@ -34,11 +33,16 @@ bool is_spectrum(const Node& node) {
          std::ranges::any_of(kForms, [&](auto key) { return find_member(node, key) != nullptr; });
 }
 
+bool contains_spectrum(const Node& node) {
+  return is_spectrum(node) || std::ranges::any_of(node.children, contains_spectrum);
+}
+
 /// Calls visit(node, row, quantity, path) for each value of an object with red, green and blue.
-template <class Visit>
-void visit_members(Node& object, std::string_view section, const std::string& path, const Visit& visit) {
-  for (Node& member : object.children) {
-    const std::span<const std::string_view> keys = section_keys(section);
+/// Tree: Node or const Node
+template <class Tree, class Visit>
+void visit_members(Tree& object, std::string_view section, const std::string& path, const Visit& visit) {
+  const std::span<const std::string_view> keys = section_keys(section);
+  for (Tree& member : object.children) {
     if (std::ranges::find(keys, member.key) == keys.end()) continue;
     const KeyInfo& info = key_info(section, member.key);
     if (!may_be_spectrum(info)) continue;
@@ -52,15 +56,15 @@ void visit_members(Node& object, std::string_view section, const std::string& pa
   }
 }
 
-template <class Visit>
-void visit_colors(Node& root, const Visit& visit) {
+template <class Tree, class Visit>
+void visit_colors(Tree& root, const Visit& visit) {
   if (root.kind != Node::Kind::object) return;
   visit_members(root, "scene", "", visit);
-  for (Node& part : root.children) {
+  for (Tree& part : root.children) {
     const bool is_media = part.key == "media", is_lights = part.key == "lights";
     if (!is_media && !is_lights && part.key != "shapes") continue;
     for (std::size_t i = 0; i < part.children.size(); ++i) {
-      Node& object = part.children[i];
+      Tree& object = part.children[i];
       if (object.kind != Node::Kind::object) continue;
       const Node* const type = is_lights ? find_member(object, "type") : nullptr;
       const std::string section = is_media    ? "medium"
@@ -79,37 +83,31 @@ std::vector<double> numbers_of(const Value& list, const Range& range) {
 
 /// Two columns, nm and value, separated by blanks, commas or semicolons; '#' begins a comment.
 Spectrum read_file(const Value& name, const Range& range) {
+  constexpr std::string_view kSeparators = " \t\r\v\f,;";
   const std::string path = name.file_path();
   Spectrum spectrum;
-  try {
-    const std::string text = InputFile(path, "spectrum").read_all();
-    int number = 0;
-    for (std::size_t begin = 0; begin < text.size(); ++number) {
-      const std::size_t end = std::min(text.find('\n', begin), text.size());
-      std::string line = text.substr(begin, std::min(end, text.find('#', begin)) - begin);
-      begin = end + 1;
-      std::ranges::replace_if(
-          line, [](char c) { return c == ',' || c == ';' || c == '\t' || c == '\r'; }, ' ');
-      std::vector<double> row;
-      for (std::size_t at = line.find_first_not_of(' '); at != std::string::npos;
-           at = line.find_first_not_of(' ', at)) {
-        const std::size_t after = std::min(line.find(' ', at), line.size());
-        const auto [rest, error] = std::from_chars(line.data() + at, line.data() + after, row.emplace_back());
-        if (error != std::errc() || rest != line.data() + after || !std::isfinite(row.back()))
-          throw Error(ErrorKind::bad_input, path, number + 1, int(at) + 1, "the spectrum has no number here",
-                      "nm and a value", printable(line.substr(at, after - at)));
-        at = after;
-      }
-      if (row.empty()) continue;
-      if (row.size() != 2 || !(row[1] >= range.low && row[1] <= range.high) ||
-          (!spectrum.nm.empty() && !(row[0] > spectrum.nm.back())))
-        throw Error(ErrorKind::bad_input, path, number + 1, 0, "the spectrum has a wrong line",
-                    fmt::format("an increasing wavelength in nm, and a value from {:g} to {:g}", range.low,
-                                range.high),
-                    printable(line));
-      spectrum.nm.push_back(row[0]);
-      spectrum.values.push_back(row[1]);
+  const auto read_line = [&](const std::string_view line, std::size_t number) {
+    std::string_view rest = line.substr(0, line.find('#'));
+    std::vector<double> row;
+    for (std::string_view word; !(word = next_word(rest, kSeparators)).empty();) {
+      const std::optional<double> value = number_of(word);
+      if (!value)
+        throw Error(ErrorKind::bad_input, path, int(number), int(word.data() - line.data()) + 1,
+                    "the spectrum has no number here", "nm and a value", printable(word));
+      row.push_back(*value);
     }
+    if (row.empty()) return;
+    if (row.size() != 2 || !(row[1] >= range.low && row[1] <= range.high) ||
+        (!spectrum.nm.empty() && !(row[0] > spectrum.nm.back())))
+      throw Error(
+          ErrorKind::bad_input, path, int(number), 0, "the spectrum has a wrong line",
+          fmt::format("an increasing wavelength in nm, and a value from {:g} to {:g}", range.low, range.high),
+          printable(line));
+    spectrum.nm.push_back(row[0]);
+    spectrum.values.push_back(row[1]);
+  };
+  try {
+    for_each_line(InputFile(path, "spectrum").read_all(), read_line);
   } catch (const Error& failure) {
     throw told_at(name.place(), failure);
   }
@@ -165,17 +163,25 @@ Rgb rgb_of(const Value& value, Quantity quantity) {
   return quantity == Quantity::coefficient ? value.number_or_triple() : value.color();
 }
 
-double value_at(const Value& value, Quantity quantity, const ThreeWavelengths& wavelengths, std::size_t c) {
-  const auto [low, high] = wavelengths.bands[c];
+Rgb values_at(const Value& value, Quantity quantity, const ThreeWavelengths& wavelengths) {
+  Rgb values;
   if (is_spectrum(value.node())) {
-    const double mean = read_spectrum(value, quantity).mean(low, high);
-    return quantity == Quantity::emission ? mean / unit_d65().mean(low, high) : mean;
+    const Spectrum spectrum = read_spectrum(value, quantity);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto [low, high] = wavelengths.bands[c];
+      values[c] = spectrum.mean(low, high);
+      if (quantity == Quantity::emission) values[c] /= unit_d65().mean(low, high);
+    }
+    return values;
   }
   const Rgb rgb = rgb_of(value, quantity);
-  if (rgb.x == rgb.y && rgb.y == rgb.z) return rgb.x;
-  if (quantity == Quantity::coefficient) return coefficient_at(rgb, .5 * (low + high));
+  if (rgb.x == rgb.y && rgb.y == rgb.z) return rgb;
+  if (quantity == Quantity::coefficient) return coefficients_at(rgb, &wavelengths);
   // Saturated colours are outside of the smoothest spectra.
-  return std::clamp(dot(wavelengths.from_rgb[c], rgb), value.info().range.low, value.info().range.high);
+  const Range& range = value.info().range;
+  for (std::size_t c = 0; c < 3; ++c)
+    values[c] = std::clamp(dot(wavelengths.from_rgb[c], rgb), range.low, range.high);
+  return values;
 }
 
 /// A colour or coefficient on a grid across the observer.
@@ -213,7 +219,7 @@ void add_medium(const Spectrum& sigma_a, const Spectrum& sigma_s, Checked& check
   checked.surfaces.push_back(each_nm([&](double at) { return std::exp(-decay(at) * distance); }));
 }
 
-Checked checked_spectra(Document& document) {
+Checked checked_spectra(const Document& document) {
   Checked checked;
   struct OfMedium {
     std::optional<Spectrum> sigma_a, sigma_s;
@@ -221,7 +227,7 @@ Checked checked_spectra(Document& document) {
   };
   std::map<std::string, OfMedium> media;
   visit_colors(document.root,
-               [&](Node& node, const KeyInfo& info, Quantity quantity, const std::string& path) {
+               [&](const Node& node, const KeyInfo& info, Quantity quantity, const std::string& path) {
                  const bool varies = is_spectrum(node);
                  if (is_left(node) && !varies) return;
                  const Value value(document, node, path, info);
@@ -263,19 +269,20 @@ int fewest_wavelengths(const Checked& checked) {
 }  // namespace
 
 std::optional<int> wavelengths_of(const Document& document) {
-  if (document.root.kind != Node::Kind::object) return {};
-  bool has_spectra = false;
-  Document copy = document;
-  visit_colors(copy.root, [&](const Node& node, auto&&...) { has_spectra |= is_spectrum(node); });
-  if (const Node* film = find_member(copy.root, "film"); film != nullptr && film->kind == Node::Kind::object)
+  const Node& root = document.root;
+  if (root.kind != Node::Kind::object) return {};
+  if (const Node* film = find_member(root, "film"); film != nullptr && film->kind == Node::Kind::object)
     if (const Node* const number = find_member(*film, "wavelengths")) {
-      const Value value(copy, *number, "film.wavelengths", key_info("film", "wavelengths"));
+      const Value value(document, *number, "film.wavelengths", key_info("film", "wavelengths"));
       const std::uint64_t wavelengths = value.whole_number();
       if (wavelengths % 3 != 0) value.fail("is not a multiple of 3", "3, 6, 9, ... 60");
       return int(wavelengths);
     }
+  bool has_spectra = false;
+  if (contains_spectrum(root))
+    visit_colors(root, [&](const Node& node, auto&&...) { has_spectra |= is_spectrum(node); });
   if (!has_spectra) return {};
-  return fewest_wavelengths(checked_spectra(copy));
+  return fewest_wavelengths(checked_spectra(document));
 }
 
 void resolve_spectra(Document& document, const ThreeWavelengths& wavelengths) {
@@ -283,10 +290,11 @@ void resolve_spectra(Document& document, const ThreeWavelengths& wavelengths) {
                [&](Node& node, const KeyInfo& info, Quantity quantity, const std::string& path) {
                  if (is_left(node) && !is_spectrum(node)) return;
                  const Value value(document, node, path, info);
+                 const Rgb values = values_at(value, quantity, wavelengths);
                  std::array<Node, 3> numbers;
                  for (std::size_t c = 0; c < 3; ++c) {
                    numbers[c].kind = Node::Kind::number;
-                   numbers[c].number = value_at(value, quantity, wavelengths, c);
+                   numbers[c].number = values[c];
                    numbers[c].text = fmt::format("{}", numbers[c].number);
                    numbers[c].offset = node.offset;
                    numbers[c].override_index = node.override_index;

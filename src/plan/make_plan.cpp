@@ -20,6 +20,7 @@
 #include "opaline/error.h"
 #include "opaline/scene.h"
 #include "plan/body_groups.h"
+#include "plan/other_wavelengths.h"
 #include "plan/picture_warnings.h"
 #include "plan/seen_pixels.h"
 #include "scene/names.h"
@@ -236,12 +237,8 @@ void warn_of_unused_colors(const Scene& scene, const World& world, std::vector<s
 std::size_t most_bytes(const Scene& scene, const World& world, std::size_t first,
                        std::size_t without_bodies) {
   std::size_t most = first;
-  for (Scene other : scene.other_wavelengths) {
-    other.camera = scene.camera;
-    other.film = scene.film;
-    other.settings = scene.settings;
-    most = std::max(most, make_plan(other, world).bytes);
-  }
+  for (std::size_t g = 0; g < scene.other_wavelengths.size(); ++g)
+    most = std::max(most, make_plan(at_other_wavelengths(scene, g), world).bytes);
   return most + (most - without_bodies) / 2;
 }
 

@@ -9,6 +9,7 @@
 #include "methods/hierarchical/surface_caches.h"
 #include "plan/choose_models.h"
 #include "plan/make_plan.h"
+#include "plan/other_wavelengths.h"
 #include "scene/scene_properties.h"
 #include "session/first_light.h"
 #include "session/spectral_image.h"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "lights/light.h"
 #include "opaline/error.h"
 
 namespace opaline {
@@ -70,16 +69,6 @@ void add_colors(Image& image, const Image& other) {
       for (std::size_t c = layer.red; c < layer.red + 3; ++c)
         image.pixels[pixel + c] += other.pixels[pixel + c];
   });
-}
-
-Scene at_other_wavelengths(const Scene& scene, std::size_t index) {
-  Scene other = scene.other_wavelengths[index];
-  other.camera = scene.camera;
-  other.film = scene.film;
-  other.settings = scene.settings;
-  for (std::size_t l = 0; l < other.lights.size() && l < scene.lights.size(); ++l)
-    if (emission(scene.lights[l]) == Rgb{}) other.lights[l] = with_emission(other.lights[l], {});
-  return other;
 }
 
 }  // namespace opaline

@@ -17,7 +17,4 @@ void convert_to_rgb(Image& image, const std::array<Rgb, 3>& to_rgb);
 /// Adds the layers of colours of another converted image of the same view.
 void add_colors(Image& image, const Image& other);
 
-/// A scene's other wavelengths with its camera, film and settings, and its dark lights.
-Scene at_other_wavelengths(const Scene& scene, std::size_t index);
-
 }  // namespace opaline

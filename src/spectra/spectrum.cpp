@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-// Illuminant A: Planck's law at 2848 K with this constant (CIE 15:2018, by the constant of 1931).
+// Illuminant A: Planck's law at 2848 K with the second radiation constant of 1931, nm K (CIE 15:2018).
 constexpr double kKelvinOfA = 2848, kSecondConstantOfA = 1.435e7;
 
 /// Zero beyond the table.

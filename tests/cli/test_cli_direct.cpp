@@ -56,6 +56,26 @@ TEST(CliDirect, InterruptedAndResumedIsTheSameAsInOneGo) {
   EXPECT_EQ(folder.entries(), 4u);  // the scene, two pictures, the sums
 }
 
+// Claim: an image of several groups of wavelengths is rendered with its samples as given; continuing it, or stopping at
+// an error or a time, is exit 2 with both ways out. Source: the documentation. Fails if: the first group alone is
+// summed, or stopped.
+TEST(CliDirect, GroupsOfWavelengthsHaveNoSums) {
+  const SceneFolder folder;
+  const std::vector<std::string> six{"--set", "film.wavelengths=6", "--entry-samples", "16", "--quiet"};
+  EXPECT_EQ(run_program(direct(folder, "a.exr", six)).exit_code, 0);
+  for (const std::vector<std::string>& one : std::vector<std::vector<std::string>>{
+           {"--resume", folder.file("sums.exr")}, {"--until-error", "1%"}, {"--time-budget", "2s"}}) {
+    std::vector<std::string> line = direct(folder, "b.exr", {"--set", "film.wavelengths=6"});
+    line.insert(line.end(), one.begin(), one.end());
+    const Outcome refused = run_program(line);
+    EXPECT_EQ(refused.exit_code, 2) << one[0];
+    EXPECT_TRUE(contains(refused.err, "cannot stop at an error or a time") &&
+                contains(refused.err, "--set film.wavelengths=3, or --entry-samples N, got 6 wavelengths"))
+        << refused.err;
+  }
+  EXPECT_EQ(folder.entries(), 2u);  // the scene, one image
+}
+
 // Claim: sums of another scene, and files that are none, are exit 2 naming the file, which stays; another
 // number of threads or of samples is no other scene. Source: metadata.h. Fails if: the key leaves out
 // overrides.

@@ -57,6 +57,7 @@ TEST(SceneEdits, OpenNoFiles) {
            {"lights.0", R"({"type": "environment", "file": "/etc/passwd"})"},
            {"shapes.0.reflectance", R"({"texture": "/etc/passwd"})"},
            {"shapes.0.reflectance.texture", R"("/etc/passwd")"},
+           {"shapes.0.reflectance", R"({"spectrum": "/etc/passwd"})"},
            {"texture", R"("/etc/passwd")"},
            {"lights.0", R"({"type": "environment", "\u0066ile": "/etc/passwd"})"}})
     try {

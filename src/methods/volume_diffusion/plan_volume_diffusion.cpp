@@ -59,15 +59,11 @@ void warn_of_open_mesh(const Scene& scene, const BodyPlan& body, std::vector<std
 }
 
 /// Sum of a body's projections along the axes, over its area: 1 along the axes, 1.5 of a sphere.
-double projected_area(const World& world, const BodyPlan& body) {
+double projected_fraction(const World& world, const BodyPlan& body) {
   double projected = 0, area = 0;
   for (const std::uint32_t m : body.meshes) {
-    const Mesh& mesh = world.meshes[m];
-    for (const auto& [i, j, k] : mesh.triangles) {
-      const Vec3d n = cross(mesh.positions[j] - mesh.positions[i], mesh.positions[k] - mesh.positions[i]);
-      projected += std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-      area += length(n);
-    }
+    projected += world.measures[m].projected_area;
+    area += world.measures[m].area;
   }
   return area > 0 ? projected / area : 1;
 }
@@ -109,7 +105,7 @@ BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyP
       body.thickness > 0 ? 1.2 * needle_fraction(input.world, body) * body.cell / body.thickness : 0;
   // The cells cutting a surface are as many as those of its projections along the axes; fitted to spheres.
   constexpr double kProjectedOfSphere = 1.5;
-  const double of_sphere = projected_area(input.world, body) / kProjectedOfSphere;
+  const double of_sphere = projected_fraction(input.world, body) / kProjectedOfSphere;
   // Thin bodies have most cells between their sides.
   constexpr double kThin = 4;
   const bool is_thin = body.thickness > 0 && body.thickness < kThin * body.cell;

@@ -19,8 +19,11 @@ const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_wei
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
 const kWidestLinear = 1000, kDecade = 1;
 
-const isTexture = (value) => value !== null && typeof value === "object" && "texture" in value;
-const textured = (owner) => Object.keys(owner).filter((key) => isTexture(owner[key]));
+// Textures and spectra, shown as text.
+const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+const objectsOf = (owner) => Object.keys(owner).filter((key) => isObject(owner[key]));
+const textOf = ({texture, spectrum, illuminant, blackbody}) =>
+  texture ?? spectrum ?? illuminant ?? (blackbody ? `black body, ${blackbody} K` : "spectrum");
 
 const make = (name, properties = {}, ...children) => {
   const element = Object.assign(document.createElement(name), properties);
@@ -71,8 +74,8 @@ export class Knobs {
     this.scene = scene;
     if (!this.rows) return;
     const media = scene.media || {}, lights = scene.lights || [], shapes = scene.shapes || [];
-    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), kOptional.filter((key) => key in m), textured(m)]),
-      lights.map((l) => [l.name, l.type]), shapes.map((s) => [s.name, "medium" in s, kGloss.filter((key) => key in s), textured(s)])]);
+    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), kOptional.filter((key) => key in m), objectsOf(m)]),
+      lights.map((l) => [l.name, l.type, objectsOf(l)]), shapes.map((s) => [s.name, "medium" in s, kGloss.filter((key) => key in s), objectsOf(s)])]);
     if (shape !== this.shape) this.build(scene);
     this.shape = shape;
     for (const knob of this.knobs) {
@@ -150,7 +153,7 @@ export class Knobs {
 
   inputs(knob, set) {
     const {row} = knob, box = make("span", {className: "inputs"});
-    if (isTexture(knob.value(this.scene))) this.text(knob, box);
+    if (isObject(knob.value(this.scene))) this.text(knob, box);
     else if (row.type === "flag") this.flag(knob, box, set);
     else if (row.type === "choice" || row.key === "medium") this.choice(knob, box, set);
     else if (kNumbers.includes(row.type)) this.number(knob, box, set);
@@ -166,10 +169,10 @@ export class Knobs {
     box.append(input);
   }
 
-  // Files are those of the scene, textures among them.
+  // Files are those of the scene.
   text(knob, box) {
     const output = make("output", {ariaLabel: knob.row.key});
-    knob.show = (value) => { output.textContent = isTexture(value) ? value.texture : value ?? ""; };
+    knob.show = (value) => { output.textContent = isObject(value) ? textOf(value) : value ?? ""; };
     box.append(output);
   }
 

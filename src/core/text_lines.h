@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines and words of OBJ and MTL files.
+// Lines and words of text files.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +20,9 @@ inline std::string_view trimmed(std::string_view text) {
 }
 
 /// Takes the first word off a line.
-inline std::string_view next_word(std::string_view& line) {
-  line = trimmed(line);
-  const std::string_view word = line.substr(0, line.find_first_of(kLineBlanks));
+inline std::string_view next_word(std::string_view& line, std::string_view blanks = kLineBlanks) {
+  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(blanks));
   line.remove_prefix(word.size());
   return word;
 }
