@@ -98,6 +98,14 @@ struct Grain {
   friend bool operator==(const Grain&, const Grain&) = default;
 };
 
+/// Fibres on a surface, OpenPBR's fuzz: they scatter light back, and less reaches the surface below.
+struct Fuzz {
+  double weight = 0;      ///< fraction of the surface with fibres, [0, 1]
+  Rgb color{1, 1, 1};     ///< albedo of the fibres
+  double roughness = .5;  ///< [0, 1]; 0: all along the normal
+  friend bool operator==(const Fuzz&, const Fuzz&) = default;
+};
+
 // ---- media ----------------------------------------------------------------------------------------------
 
 /// Reduced coefficients per channel, 1/mm, finite and >= 0.
@@ -160,6 +168,7 @@ struct Medium {
   ChosenProfile chosen{};                                      ///< if profile is none
   NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< for ProfileKind::normalized_diffusion
   Grain grain{};                                               ///< grain of the boundary
+  Fuzz fuzz{};                                                 ///< fuzz above the boundary
   std::vector<MediumLayer> layers{};                           ///< empty: homogeneous, or by its textures
   /// Shortest mean free path and diffuse mean free path at all wavelengths of a spectral image, mm; 0: a medium
   /// in red, green and blue.
@@ -264,6 +273,7 @@ struct Shape {
   std::optional<Texture> normal_map{};           ///< its scale applies to the slopes
   std::optional<Texture> bump_map{};             ///< heights; its scale is in mm
   std::optional<Gloss> gloss{};                  ///< specular reflection of an opaque shape; none: diffuse
+  Fuzz fuzz{};                                   ///< fuzz of an opaque shape
   friend bool operator==(const Shape&, const Shape&) = default;
 };
 

@@ -29,9 +29,9 @@ std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::si
                                            std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
   const BodyPlan& plan = input.plan.groups[group];
-  const DiffuseProfile profile = make_diffuse_profile(input.scene.media[plan.medium], input.world.unit);
-  return compute_irradiance({input.rays, samples, lights, profile.eta, settings.light_samples,
-                             hash_bits(settings.seed, group + 1000), input.monitor, plan.cell > 0});
+  return compute_irradiance({input.rays, samples, lights, boundary_of(input.scene.media[plan.medium]),
+                             settings.light_samples, hash_bits(settings.seed, group + 1000), input.monitor,
+                             plan.cell > 0});
 }
 
 std::vector<Light> recentred_lights(const Scene& scene, const World& world) {

@@ -29,6 +29,7 @@ struct MethodState {
 struct Body {
   BodyPlan plan;
   DiffuseProfile profile;
+  OuterBoundary boundary;
   SurfaceSamples surface;
   std::vector<LightTransfer> transfers;  ///< one per light
   std::vector<RgbF> entering = {};       ///< entering_tints, one per sample; empty: none

@@ -31,6 +31,9 @@ inline constexpr const char
     *kRotationMeaning =
         "rotates u for `specular_anisotropy`, counter-clockwise; without UVs, u is horizontal, around y";
 
+/// Rows of fuzz, of media and of opaque shapes.
+std::vector<KeyInfo> fuzz_rows(std::string_view section);
+
 /// Row of the section "medium".
 struct MediumRow {
   KeyInfo info;

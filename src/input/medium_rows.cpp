@@ -25,8 +25,19 @@ MediumRow textured(KeyInfo info) {
 
 }  // namespace
 
+std::vector<KeyInfo> fuzz_rows(std::string_view section) {
+  using enum ValueType;
+  return {row(section, "fuzz_weight", number, "", kUnitInterval, "0",
+              "fraction of the surface with fibres, as in OpenPBR: peach fuzz, velvet, dust"),
+          row(section, "fuzz_color", color, "", kUnitInterval, "1", "albedo of the fibres"),
+          row(section, "fuzz_roughness", number, "", kUnitInterval, "0.5",
+              "1: fibres in all directions; towards 0: along the normal, with light at grazing angles only; "
+              "below 0.25 as 0.25")};
+}
+
 std::span<const MediumRow> medium_rows() {
   using enum ValueType;
+  static const std::vector<KeyInfo> fuzz = fuzz_rows("medium");
   static const std::vector<MediumRow> table{
       row("medium", "preset", choice, "", kFiniteNumber, "",
           "a measured material: apple, chicken1, chicken2, cream, ketchup, marble, potato, skimmilk, skin1, "
@@ -75,6 +86,9 @@ std::span<const MediumRow> medium_rows() {
           "also for light from inside; at 0 all light enters"),
       row("medium", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning),
       row("medium", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning),
+      fuzz[0],
+      fuzz[1],
+      fuzz[2],
       textured<&Medium::subsurface_weight, &Medium::weight_texture>(
           row("medium", "subsurface_weight", number, "", kUnitInterval, "1",
               "fraction of the light that scatters below the surface; `base_color` reflects the rest; "

@@ -235,8 +235,9 @@ void drop_replaced_surface(Node& shape) {
     std::erase_if(shape.children, [&](const Node& c) { return c.override_index < 0 && c.key == key; });
   };
   if (is_given("medium"))
-    for (const char* key : {"reflectance", "metalness", "specular_roughness", "specular_ior",
-                            "specular_weight", "specular_anisotropy", "specular_rotation"})
+    for (const char* key :
+         {"reflectance", "metalness", "specular_roughness", "specular_ior", "specular_weight",
+          "specular_anisotropy", "specular_rotation", "fuzz_weight", "fuzz_color", "fuzz_roughness"})
       drop(key);
   else if (is_given("reflectance"))
     for (const char* key : {"medium", "group"}) drop(key);

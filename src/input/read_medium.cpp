@@ -141,6 +141,18 @@ Grain read_grain(const ObjectReader& reader) {
   return grain;
 }
 
+Fuzz read_fuzz(const ObjectReader& reader) {
+  Fuzz fuzz;
+  const auto weight = reader.find("fuzz_weight"), color = reader.find("fuzz_color"),
+             roughness = reader.find("fuzz_roughness");
+  for (const auto& key : {color, roughness})
+    if (key && !weight) key->fail_key("has no effect without fibres", "'fuzz_weight' with it");
+  if (weight) fuzz.weight = weight->number();
+  if (color) fuzz.color = color->color();
+  if (roughness) fuzz.roughness = roughness->number();
+  return fuzz;
+}
+
 Medium read_medium(const Value& value, double mm_per_unit) {
   const ObjectReader reader(value, "medium");
   Medium medium;
@@ -169,6 +181,7 @@ Medium read_medium(const Value& value, double mm_per_unit) {
   if (const auto weight = reader.find("specular_weight"))
     medium.eta = weighted_ior(medium.eta, weight->number());
   medium.grain = read_grain(reader);
+  medium.fuzz = read_fuzz(reader);
   read_textured_values(reader, medium);
   const auto profile = reader.find("profile");
   const std::size_t choice = profile ? profile->choice() : 0;

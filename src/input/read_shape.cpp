@@ -138,6 +138,10 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
   if (const auto map = reader.find("normal_map")) shape.normal_map = read_normal_map(*map);
   if (const auto map = reader.find("bump_map")) shape.bump_map = read_bump_map(*map, context.mm_per_unit);
   read_gloss(reader, shape);
+  for (const std::string_view name : {"fuzz_weight", "fuzz_color", "fuzz_roughness"})
+    if (const auto key = reader.find(name); key && shape.medium)
+      key->fail_key("belongs to the medium", "the key in 'media', or an opaque shape");
+  shape.fuzz = read_fuzz(reader);
   if (!group) return;
   shape.group = group->string();
   if (!medium) group->fail_key("has no effect without 'medium'");

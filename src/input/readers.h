@@ -36,6 +36,9 @@ double weighted_ior(double ior, double weight);
 /// Reads `specular_anisotropy` and `specular_rotation`.
 Grain read_grain(const ObjectReader& reader);
 
+/// Reads `fuzz_weight`, `fuzz_color` and `fuzz_roughness`.
+Fuzz read_fuzz(const ObjectReader& reader);
+
 Medium read_medium(const Value& value, double mm_per_unit);
 /// Reads the layers of a medium, after all media: their order is free. Also sets its equivalent coefficients.
 /// in    medium: with the key `layers`, otherwise unchanged

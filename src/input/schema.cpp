@@ -89,6 +89,7 @@ std::vector<KeyInfo> scene_rows() {
 
 std::vector<KeyInfo> shape_rows() {
   using enum ValueType;
+  const std::vector<KeyInfo> fuzz = fuzz_rows("shape");
   return {
       row("shape", "name", text, "", kFiniteNumber, "\"shape0\", \"shape1\", ...",
           "unique name in messages and `--set`"),
@@ -136,6 +137,9 @@ std::vector<KeyInfo> shape_rows() {
           "ignore it"),
       row("shape", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning),
       row("shape", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning),
+      fuzz[0],
+      fuzz[1],
+      fuzz[2],
       textured(row("shape", "normal_map", object, "", kFiniteNumber, "none",
                    "tangent-space normal map: red right, green up, blue out, 0 to 1 for -1 to 1; `scale` "
                    "multiplies the slopes")),

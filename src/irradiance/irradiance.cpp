@@ -73,7 +73,7 @@ void trace_transfers(const IrradianceInput& input, std::span<const Light> lights
   std::vector<std::vector<ErrorSums>> errors(lights.size(),
                                              std::vector<ErrorSums>(chunk_count(n, batch_size)));
   parallel_chunks(n, batch_size, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
-    ShadowBatch batch(input.rays, lights, input.eta, shadow_rays(lights[0], input.light_samples),
+    ShadowBatch batch(input.rays, lights, input.boundary, shadow_rays(lights[0], input.light_samples),
                       light_seed(input.seed, lights[0]));
     batch.sort_rays();
     batch.reserve(end - begin);
@@ -150,7 +150,7 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
     t.weights.resize(n);
     if (!input.variance.empty()) t.deviations.resize(n);
   }
-  ShadowBatch batch(input.rays, lights, input.eta, shadow_rays(lights[0], input.light_samples),
+  ShadowBatch batch(input.rays, lights, input.boundary, shadow_rays(lights[0], input.light_samples),
                     light_seed(input.seed, lights[0]));
   if (input.is_together) batch.share_shadows();
   const Halves halves(batch.samples());
@@ -194,7 +194,7 @@ void for_each_ray(const PointIrradianceInput& input, const UseOfRay& use, std::s
     const std::span<const Light> lights = input.lights.subspan(first, count);
     const int wanted =
         is_visible(lights[0]) || lobes.empty() ? input.light_samples : kMoreOfLobes * input.light_samples;
-    ShadowBatch batch(input.rays, lights, input.eta, shadow_rays(lights[0], wanted),
+    ShadowBatch batch(input.rays, lights, input.boundary, shadow_rays(lights[0], wanted),
                       light_seed(input.seed, lights[0]));
     batch.keep_directions();
     for (std::size_t begin = 0; begin < n; begin += batch_size) {

@@ -12,6 +12,7 @@
 #include "opaline/monitor.h"
 #include "opaline/scene.h"
 #include "sampling/sample_surface.h"
+#include "transport/outer_boundary.h"
 
 namespace opaline {
 
@@ -19,8 +20,8 @@ struct IrradianceInput {
   const RayScene& rays;
   std::span<const SurfaceSample> samples;
   std::span<const Light> lights;  ///< in the world's recentred space
-  double eta = 1;                 ///< inside / outside
-  int light_samples = 64;         ///< shadow rays a sample for lights with an area
+  OuterBoundary boundary = 1;
+  int light_samples = 64;  ///< shadow rays a sample for lights with an area
   std::uint64_t seed = 0;
   Monitor* monitor = nullptr;
   /// Uses the triangles' normals for cosines and Ft, conserving the incident flux. Interpolated normals
@@ -56,7 +57,7 @@ struct PointIrradianceInput {
   std::span<const SurfacePoint> points;
   std::span<const std::uint64_t> keys;  ///< one per point: its position in the low-discrepancy sequence
   std::span<const Light> lights;        ///< recentred
-  double eta = 0;                       ///< inside / outside; 0: no boundary, Ft = 1 (opaque surfaces)
+  OuterBoundary boundary = {};
   int light_samples = 64;
   std::uint64_t seed = 0;
   /// Unless empty: one per point, receives the estimated variance of its irradiance, per channel, in double:

@@ -64,17 +64,18 @@ struct IrradianceLattice::Crossings {
   std::array<std::array<std::array<float, 2>, kLines * kLines>, 3> shifts;  // line offsets
 };
 
-IrradianceLattice::IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta,
-                                     int light_samples, bool holds_lights)
+IrradianceLattice::IrradianceLattice(std::vector<bool> is_own_mesh, double spacing,
+                                     const OuterBoundary& boundary, int light_samples, bool holds_lights)
     : is_own_mesh_(std::move(is_own_mesh)),
       spacing_(spacing),
-      eta_(eta),
+      boundary_(boundary),
       light_samples_(light_samples),
       holds_lights_(holds_lights) {}
 
-bool IrradianceLattice::is_of(const std::vector<bool>& is_own_mesh, double spacing, double eta,
-                              int light_samples) const {
-  return is_own_mesh == is_own_mesh_ && spacing == spacing_ && eta == eta_ && light_samples == light_samples_;
+bool IrradianceLattice::is_of(const std::vector<bool>& is_own_mesh, double spacing,
+                              const OuterBoundary& boundary, int light_samples) const {
+  return is_own_mesh == is_own_mesh_ && spacing == spacing_ && boundary == boundary_ &&
+         light_samples == light_samples_;
 }
 
 void IrradianceLattice::set_lights(std::span<const std::optional<std::size_t>> before) {
@@ -168,7 +169,7 @@ void IrradianceLattice::light(Cell& cell, const PointIrradianceInput& lighting) 
   PointIrradianceInput here = lighting;
   here.points = cell.points;
   here.keys = keys;
-  here.eta = eta_;
+  here.boundary = boundary_;
   here.light_samples = light_samples_;
   here.variance = {};
   if (holds_lights_) add_transfers(here, cell.lights);

@@ -41,14 +41,15 @@ class IrradianceLattice {
     std::uint64_t seed = 0, picture = 0;      ///< seeds of the points' keys; image of `entered`
   };
 
-  /// in    spacing: of the lines of level 0, mm; eta: of the boundary, as PointIrradianceInput's;
+  /// in    spacing: of the lines of level 0, mm; boundary: as PointIrradianceInput's;
   ///       light_samples: shadow rays per point and light with an area; holds_lights: caches the transfer of
   ///       each light for later images
-  IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, double eta, int light_samples,
-                    bool holds_lights);
+  IrradianceLattice(std::vector<bool> is_own_mesh, double spacing, const OuterBoundary& boundary,
+                    int light_samples, bool holds_lights);
 
   /// True if these inputs would make the same lattice.
-  bool is_of(const std::vector<bool>& is_own_mesh, double spacing, double eta, int light_samples) const;
+  bool is_of(const std::vector<bool>& is_own_mesh, double spacing, const OuterBoundary& boundary,
+             int light_samples) const;
   /// Matches the cached lights to those of a new image, as HeldView::set_lights.
   void set_lights(std::span<const std::optional<std::size_t>> before);
   /// Begins an image with other light colours. Drops all cells if they exceed kMostBytes.
@@ -76,7 +77,8 @@ class IrradianceLattice {
   void add_crossings(const RayScene& rays, const LineQuery::Triangle& triangle, Crossings& crossings) const;
 
   std::vector<bool> is_own_mesh_;
-  double spacing_, eta_;
+  double spacing_;
+  OuterBoundary boundary_;
   int light_samples_;
   bool holds_lights_;
   std::uint64_t picture_ = 0;

@@ -18,7 +18,7 @@
 #include "lights/environment_sample.h"
 #include "lights/light_tree.h"
 #include "lights/shared_rays.h"
-#include "transport/fresnel.h"
+#include "transport/outer_boundary.h"
 
 namespace opaline {
 
@@ -39,18 +39,19 @@ inline std::size_t sharing_rays(std::span<const Light> lights) {
 class ShadowBatch {
  public:
   /// samples: rays per point; 1 for lights without an area. For ManyLights, each ray goes to one of them.
-  ShadowBatch(const RayScene& rays, std::span<const Light> lights, double eta, int samples,
+  ShadowBatch(const RayScene& rays, std::span<const Light> lights, const OuterBoundary& boundary, int samples,
               std::uint64_t seed)
       : rays_(rays),
         lights_(lights),
-        eta_(float(eta)),
+        boundary_(boundary),
         samples_(is_delta(lights[0]) ? 1 : samples),
         seed_(seed),
         many_(std::get_if<ManyLights>(&lights[0].source)),
         environment_(std::get_if<EnvironmentLight>(&lights[0].source)),
-        mean_transmitted_(eta > 0 ? fresnel_transmittance(kMeanCosine, float(eta)) : 1) {}
-  ShadowBatch(const RayScene& rays, const Light& light, double eta, int samples, std::uint64_t seed)
-      : ShadowBatch(rays, std::span(&light, 1), eta, samples, seed) {}
+        mean_transmitted_(boundary.transmittance(kMeanCosine)) {}
+  ShadowBatch(const RayScene& rays, const Light& light, const OuterBoundary& boundary, int samples,
+              std::uint64_t seed)
+      : ShadowBatch(rays, std::span(&light, 1), boundary, samples, seed) {}
 
   /// Call for incoherent points: sorts their rays before tracing.
   void sort_rays() { scattered_ = samples_ == 1; }
@@ -149,8 +150,7 @@ class ShadowBatch {
     const float cosine = dot(point.normal, sample.direction), height = dot(point.geometric, sample.direction);
     const bool is_lifted = cosine > 0 && height < kGrazing && is_lifted_at(point, height);
     const bool is_above = cosine > 0 && (height > 0 || is_lifted);
-    const float transmitted =
-        is_above && eta_ > 0 ? fresnel_transmittance(std::min(cosine, 1.0f), eta_) : 1.0f;
+    const float transmitted = is_above ? boundary_.transmittance(std::min(cosine, 1.0f)) : 1.0f;
     bool is_carried = false;
     for (std::size_t l = 0; l < lights_.size(); ++l) {
       carried_.push_back(is_above && weights[l] > 0 ? weights[l] * cosine * transmitted : 0);
@@ -402,7 +402,7 @@ class ShadowBatch {
 
   const RayScene& rays_;
   std::span<const Light> lights_;
-  float eta_;
+  OuterBoundary boundary_;
   int samples_;
   std::uint64_t seed_;
   const ManyLights* many_;               // null: a single light

@@ -131,7 +131,7 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
   const int rays = shadow_rays(input.lights[light], input.light_samples);
   const std::uint32_t most = delta ? CellPoints::kMost : std::min(CellPoints::kMost, 2 * std::uint32_t(rays));
   const int each = delta ? 1 : 2 * rays / int(most);
-  ShadowBatch batch(input.rays, input.lights[light], input.eta, each,
+  ShadowBatch batch(input.rays, input.lights[light], input.boundary, each,
                     light_seed(input.seed, input.lights[light]));
   const std::size_t batch_size = batch_points(int(most) * each);
   for (std::size_t begin = 0; begin < marks.size(); begin += batch_size) {

@@ -14,6 +14,7 @@
 #include "subsurface/hit_textures.h"
 #include "transport/angular_exit.h"
 #include "transport/fresnel.h"
+#include "transport/outer_boundary.h"
 #include "transport/rough_boundary.h"
 #include "transport/shared_roughness.h"
 
@@ -41,6 +42,8 @@ struct Appearance {
   const Texture *roughness_texture = nullptr, *metalness_texture = nullptr;
   /// Angular distribution of light traced inside; none: given by the boundary.
   std::shared_ptr<const AngularExit> exit = {};
+  OuterBoundary boundary = {};
+  RgbF fuzz_color{};  ///< albedo of the fibres
 
   /// Looks up the textures of numbers.
   void look_up(const SurfaceTextures::Place& place, HitTextures& here) const {
@@ -70,6 +73,27 @@ struct Appearance {
     const float entered = kInversePi * (1 - reflectance(cosine)) / (1 - average_reflectance);
     return metalness > 0 ? entered * (1 - metalness) : entered;
   }
+  /// radiance_of_exitance past fuzz. Fibres also send light back to the surface, where it is reflected again,
+  /// here diffusely: a white surface with white fibres stays white in a white furnace.
+  RgbF radiance_past_fuzz(float cosine) const {
+    constexpr float kMostMirrored = 2;  // light leaving thin parts of a dark body may not have entered there
+    const float once = radiance_of_exitance(cosine), entering = has_boundary ? 1 - average_reflectance : 1;
+    const RgbF mirrored =
+        has_boundary ? RgbF(average_reflectance * (1 - metalness)) + albedo * metalness : RgbF(0);
+    RgbF radiance;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float entered = entering * albedo[c],
+                  reflected = std::min(1.f, mirrored[c] + entered * (1 - metalness)),
+                  again = (1 - boundary.past_fuzz()) * fuzz_color[c] * reflected;
+      const float all = translucent ? std::min(reflected, kMostMirrored * entered) : reflected;
+      radiance[c] =
+          once + std::numbers::inv_pi_v<float> * all / std::max(entered, 1e-6f) * again / (1 - again);
+    }
+    return radiance * boundary.past_fuzz(cosine);
+  }
+  /// Light scattered back by fuzz under uniform illumination.
+  RgbF fuzz_share(float cosine) const { return fuzz_color * (1 - boundary.past_fuzz(cosine)); }
+
   bool mirrors() const { return has_boundary && eta != 1; }
   /// Specular reflectance of uniform illumination, by view direction.
   RgbF mirrored_share(float cosine) const {
@@ -114,6 +138,8 @@ inline void roughen(Appearance& appearance, double roughness, const std::optiona
 
 inline Appearance opaque_appearance(const Shape& shape) {
   Appearance appearance{.albedo = RgbF(shape.reflectance), .rough = {}};
+  appearance.boundary = boundary_of_opaque(shape);
+  appearance.fuzz_color = RgbF(shape.fuzz.color);
   if (!shape.gloss) return appearance;
   const Gloss& gloss = *shape.gloss;
   appearance.eta = float(gloss.eta);
@@ -134,6 +160,8 @@ inline Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool f
   const DiffuseProfile profile = make_diffuse_profile(medium);
   Appearance appearance{true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), {},
                         true};
+  appearance.boundary = boundary_of(medium);
+  appearance.fuzz_color = RgbF(medium.fuzz.color);
   roughen(appearance, medium.specular_roughness, medium.roughness_texture, medium.grain, medium.eta,
           shape.normal_map.has_value());
   if (follows_light)

@@ -130,7 +130,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
   parallel_chunks(rays.size(), kPlacesAtOnce, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     const std::vector<Shader::SeenSurfaces> seen = shader.surfaces_along(
         std::span(rays).subspan(begin, end - begin), std::span(keys).subspan(begin, end - begin));
-    for (const auto& [field, hits, eta] : seen) {
+    for (const auto& [field, hits, boundary] : seen) {
       std::vector<std::uint32_t> held_places;  // selection in a closer lattice depends on the lights
       for (const std::uint32_t ray : hits.rays) held_places.push_back(std::uint32_t(keys[begin + ray]));
       HeldView::Gathering* const held =
@@ -139,7 +139,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
           squares(hits.points.size());
       std::vector<float> met(hits.points.size());
       std::vector<float> nearness(hits.points.size());  // mean inverse distance of the hits
-      for_each_gathered({input.rays, shader, hits.points, hits.keys, eta, rays_each,
+      for_each_gathered({input.rays, shader, hits.points, hits.keys, boundary, rays_each,
                          hash_bits(input.scene.settings.seed, kSeed), held, view},
                         [&](const SurfaceLight& light) {
                           irradiance[light.point] += light.irradiance;
@@ -151,7 +151,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
         const std::size_t k = begin + hits.rays[i], place = places[k];
         const float spacing = float(apart * double(rays[k].ray.far));
-        lattice.places.set(place, hits.points[i], eta, spacing);
+        lattice.places.set(place, hits.points[i], boundary.number(), spacing);
         lattice.irradiance[place] = irradiance[i];
         lattice.further[place] = further[i];
         lattice.met[place] = met[i];
@@ -211,32 +211,33 @@ bool BouncedPlaces::Lattice::needs_closer_places(const CameraRays::FilmPlace& se
   return apart.x > kVaried * most.x || apart.y > kVaried * most.y || apart.z > kVaried * most.z;
 }
 
-std::optional<RgbF> BouncedPlaces::at(const SurfacePoint& point, float eta) const {
+std::optional<RgbF> BouncedPlaces::at(const SurfacePoint& point, const OuterBoundary& boundary) const {
   const CameraRays::FilmPlace seen = camera_.film_place(Vec3d(point.position));
   if (!(seen.depth > 0)) return {};
   for (std::size_t l = lattices_.size(); l-- > 0;) {
     if (l > 0 && !lattices_[l - 1].needs_closer_places(seen)) continue;
-    if (const std::optional<RgbF> known = lattices_[l].at(seen, point, eta)) return known;
+    if (const std::optional<RgbF> known = lattices_[l].at(seen, point, boundary.number())) return known;
   }
   return {};
 }
 
 std::optional<RgbF> BouncedPlaces::Lattice::at(const CameraRays::FilmPlace& seen, const SurfacePoint& point,
-                                               float eta) const {
+                                               float boundary) const {
   const auto [x, y] = in_places(seen);
   if (!(x >= 0 && y >= 0 && x < columns && y < rows)) return {};
-  return mean(irradiance, x, y, point.position, point.normal, eta);
+  return mean(irradiance, x, y, point.position, point.normal, boundary);
 }
 
 std::optional<RgbF> BouncedPlaces::Lattice::mean(std::span<const RgbF> values, double x, double y,
-                                                 const Vec3f& point, const Vec3f& normal, float eta) const {
+                                                 const Vec3f& point, const Vec3f& normal,
+                                                 float boundary) const {
   RgbF sum;
   float weights = 0;
   const int left = std::clamp(int(x) - 1, 0, columns - int(kBeside));
   for (int row = std::max(0, int(y) - 1); row <= std::min(rows - 1, int(y) + 2); ++row) {
     const std::size_t first = std::size_t(row) * std::size_t(columns) + std::size_t(left);
     const std::array<float, kBeside> of_row =
-        places.weights({point, normal, eta, float(x - left), float(y - row)}, first);
+        places.weights({point, normal, boundary, float(x - left), float(y - row)}, first);
     for (std::size_t k = 0; k < kBeside; ++k) {
       if (!(of_row[k] > 0)) continue;
       sum += values[first + k] * of_row[k];
@@ -253,12 +254,12 @@ void BouncedPlaces::Lattice::smooth(std::vector<RgbF>& values, int times, const 
     std::vector<RgbF> smooth = values;
     parallel_chunks(values.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (!(places.eta[i] >= 0)) continue;
+        if (!(places.boundary[i] >= 0)) continue;
         const Vec3f point(places.x[i], places.y[i], places.z[i]),
             normal(places.normal_x[i], places.normal_y[i], places.normal_z[i]);
         const std::size_t row = i / std::size_t(columns), column = i % std::size_t(columns);
         if (const std::optional<RgbF> around =
-                mean(values, double(column), double(row), point, normal, places.eta[i]))
+                mean(values, double(column), double(row), point, normal, places.boundary[i]))
           smooth[i] = combine(i, *around);
       }
     });
@@ -290,13 +291,14 @@ BouncedLight::BouncedLight(const RenderInput& input, const Shader& shader)
       places_(input.bounced != nullptr ? input.bounced
                                        : std::make_shared<const BouncedPlaces>(input, shader)) {}
 
-std::vector<RgbF> BouncedLight::at(const SurfaceHits& hits, float eta, HeldView::Surface* held) const {
+std::vector<RgbF> BouncedLight::at(const SurfaceHits& hits, const OuterBoundary& boundary,
+                                   HeldView::Surface* held) const {
   std::vector<RgbF> irradiance(hits.points.size());
   std::vector<SurfacePoint> points;
   std::vector<std::uint64_t> keys;
   std::vector<std::uint32_t> alone;
   for (std::size_t i = 0; i < hits.points.size(); ++i) {
-    if (const std::optional<RgbF> known = places_->at(hits.points[i], eta)) {
+    if (const std::optional<RgbF> known = places_->at(hits.points[i], boundary)) {
       irradiance[i] = *known;
       continue;
     }
@@ -306,7 +308,7 @@ std::vector<RgbF> BouncedLight::at(const SurfaceHits& hits, float eta, HeldView:
   }
   if (alone.empty()) return irradiance;
   const std::vector<RgbF> gathered = gathered_irradiance(
-      {input_.rays, shader_, points, keys, eta, kOfHit, hash_bits(input_.scene.settings.seed, kSeed + 1),
+      {input_.rays, shader_, points, keys, boundary, kOfHit, hash_bits(input_.scene.settings.seed, kSeed + 1),
        held != nullptr ? &gathering_of(held->gathering, alone) : nullptr, input_.view});
   for (std::size_t k = 0; k < alone.size(); ++k) irradiance[alone[k]] = gathered[k];
   return irradiance;
@@ -314,14 +316,14 @@ std::vector<RgbF> BouncedLight::at(const SurfaceHits& hits, float eta, HeldView:
 
 void BouncedPlaces::Places::resize(std::size_t count) {
   for (auto* values : {&x, &y, &z, &normal_x, &normal_y, &normal_z, &reach}) values->resize(count);
-  eta.resize(count, -1);
+  boundary.resize(count, -1);
 }
 
-void BouncedPlaces::Places::set(std::size_t i, const SurfacePoint& point, float boundary, float spacing) {
+void BouncedPlaces::Places::set(std::size_t i, const SurfacePoint& point, float number, float spacing) {
   x[i] = point.position.x, y[i] = point.position.y, z[i] = point.position.z;
   normal_x[i] = point.normal.x, normal_y[i] = point.normal.y, normal_z[i] = point.normal.z;
   reach[i] = 2 * kOffPlane * spacing;
-  eta[i] = boundary;
+  boundary[i] = number;
 }
 
 std::array<float, BouncedPlaces::kBeside> BouncedPlaces::Places::weights(const Asked& asked,
@@ -331,7 +333,7 @@ std::array<float, BouncedPlaces::kBeside> BouncedPlaces::Places::weights(const A
     std::memcpy(&lanes, values.data() + first, sizeof lanes);
     return lanes;
   };
-  const auto& [point, normal, boundary, dx, dy] = asked;
+  const auto& [point, normal, number, dx, dy] = asked;
   const Lanes across = dx - Lanes{0, 1, 2, 3}, near = 1 - (across * across + dy * dy) / 4;
   const Lanes nx = from(normal_x), ny = from(normal_y), nz = from(normal_z);
   const Lanes cosine = normal.x * nx + normal.y * ny + normal.z * nz;
@@ -340,7 +342,7 @@ std::array<float, BouncedPlaces::kBeside> BouncedPlaces::Places::weights(const A
       (absolute(px * normal.x + py * normal.y + pz * normal.z) + absolute(px * nx + py * ny + pz * nz)) /
       from(reach);
   const Lanes alike = cosine * cosine / (1 + off * off);
-  const auto counts = (near > 0) & (cosine > 0) & (from(eta) == boundary);
+  const auto counts = (near > 0) & (cosine > 0) & (from(boundary) == number);
   const Lanes weights = counts ? near * near * alike * alike : Lanes{};
   std::array<float, kBeside> each;
   std::memcpy(each.data(), &weights, sizeof weights);
@@ -416,7 +418,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
             points.push_back(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v));
             keys.push_back(i);
           }
-          for_each_gathered({input.rays, shader, points, keys, float(body.profile.eta), rays_each, seed,
+          for_each_gathered({input.rays, shader, points, keys, body.boundary, rays_each, seed,
                              held != nullptr ? &(*held)[chunk] : nullptr, view},
                             [&](const SurfaceLight& light) {
                               own[begin + light.point] += light.irradiance;

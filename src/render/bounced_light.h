@@ -28,22 +28,22 @@ class BouncedPlaces {
   BouncedPlaces(const RenderInput& input, const Shader& shader);
 
   /// Interpolated indirect irradiance; none without a cache point on the point's tangent plane.
-  std::optional<RgbF> at(const SurfacePoint& point, float eta) const;
+  std::optional<RgbF> at(const SurfacePoint& point, const OuterBoundary& boundary) const;
 
  private:
   /// Cache points, one array per coordinate for vector instructions.
   struct Places {
     std::vector<float> x, y, z, normal_x, normal_y, normal_z;
-    std::vector<float> reach;  ///< distance from the tangent plane at which the weight is a half
-    std::vector<float> eta;    ///< below 0: no surface there
+    std::vector<float> reach;     ///< distance from the tangent plane at which the weight is a half
+    std::vector<float> boundary;  ///< OuterBoundary::number; below 0: no surface there
 
     /// Boundary and position of a query; dx, dy: to the first cache point of a row, in spacings.
     struct Asked {
       Vec3f point, normal;
-      float eta, dx, dy;
+      float boundary, dx, dy;
     };
     void resize(std::size_t count);
-    void set(std::size_t i, const SurfacePoint& point, float boundary, float spacing);
+    void set(std::size_t i, const SurfacePoint& point, float number, float spacing);
     /// Weights of the cache points first, first + 1, ... of a row.
     std::array<float, kBeside> weights(const Asked& asked, std::size_t first) const;
   };
@@ -63,7 +63,8 @@ class BouncedPlaces {
     std::array<double, 2> in_places(const CameraRays::FilmPlace& seen) const;
     /// True if a cache point around this position is near a surface and the irradiance varies.
     bool needs_closer_places(const CameraRays::FilmPlace& seen) const;
-    std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point, float eta) const;
+    std::optional<RgbF> at(const CameraRays::FilmPlace& seen, const SurfacePoint& point,
+                           float boundary) const;
     /// Smooths `further`: its paths are noisier, and it varies less.
     void smooth_further();
     /// Smooths the irradiance within its noise: few rays meet a small bright place.
@@ -75,7 +76,7 @@ class BouncedPlaces {
     void smooth(std::vector<RgbF>& values, int times, const Combine& combine) const;
     /// Mean of values at the places around a position, by their weights.
     std::optional<RgbF> mean(std::span<const RgbF> values, double x, double y, const Vec3f& point,
-                             const Vec3f& normal, float eta) const;
+                             const Vec3f& normal, float boundary) const;
   };
   void gather(const RenderInput& input, const Shader& shader, Lattice& lattice,
               std::span<const std::uint32_t> places);
@@ -103,7 +104,8 @@ class BouncedLight {
   BouncedLight(const RenderInput& input, const Shader& shader);
 
   /// Irradiance per hit, W/mm^2. held: cached results for the same hits, extended; or null
-  std::vector<RgbF> at(const SurfaceHits& hits, float eta, HeldView::Surface* held = nullptr) const;
+  std::vector<RgbF> at(const SurfaceHits& hits, const OuterBoundary& boundary,
+                       HeldView::Surface* held = nullptr) const;
 
  private:
   const RenderInput& input_;

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {
@@ -93,7 +92,7 @@ void use_all(const GatherInput& input, std::size_t begin, std::span<const Traced
   const std::vector<RgbF> radiance = input.shader.radiance_along(rays, keys, held, further);
   const float each = float(std::numbers::pi) / float(input.rays_each);
   for (std::size_t r = 0; r < radiance.size(); ++r) {
-    const float transmitted = input.eta > 0 ? fresnel_transmittance(met[r].cosine, input.eta) : 1.0f;
+    const float transmitted = input.boundary.transmittance(met[r].cosine);
     const Ray& ray = rays[r].ray;
     const float factor = each * transmitted;
     use({begin + met[r].point, ray.direction, ray.far, radiance[r] * factor, further[r] * factor});

@@ -23,7 +23,7 @@ struct GatherInput {
   const Shader& shader;
   std::span<const SurfacePoint> points;
   std::span<const std::uint64_t> keys;  ///< one per point: chooses its random numbers
-  float eta = 0;                        ///< eta of the boundary transmitting the light; 0: none
+  OuterBoundary boundary = {};          ///< boundary transmitting the light
   int rays_each = 64;
   std::uint64_t seed = 0;
   /// Cached hits of the same points, keys, number and seed, extended up to gathered_bytes of the view; or

@@ -67,9 +67,9 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
       pixel_spread_(camera_ray_spread(input.scene)),
       fields_(make_fields(input, textures_, sources)) {
   if (input.view != nullptr) {
-    std::vector<float> eta;
-    for (const std::unique_ptr<Field>& field : fields_.all) eta.push_back(field->eta());
-    input.view->set_fields(fields_.of_mesh, eta);
+    std::vector<OuterBoundary> boundaries;
+    for (const std::unique_ptr<Field>& field : fields_.all) boundaries.push_back(field->boundary());
+    input.view->set_fields(fields_.of_mesh, boundaries);
   }
   for (const Light& light : lights_) emitted_.emplace_back(emission(light));
   for (const Light& light : lights_)
@@ -106,15 +106,18 @@ Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::
     const SurfaceHits& hits = result.hits[f];
     if (hits.points.empty()) continue;
     const Field& field = *fields_.all[f];
+    const OuterBoundary boundary = field.boundary();
     HeldView::Surface* const known = held != nullptr ? &held->surfaces[f] : nullptr;
     const bool is_asked = pass.is_seen ? field.asks_irradiance() : field.reflects();
-    const std::vector<RgbF> bounced =
-        is_asked ? bounced_at(hits, field.eta(), pass, known) : std::vector<RgbF>{};
+    const bool shows_fuzz = boundary.has_fuzz() && batch.specular != Specular::uniform;
+    const std::vector<RgbF> arriving =
+        is_asked || shows_fuzz ? bounced_at(hits, boundary, pass, known) : std::vector<RgbF>{};
+    const std::span<const RgbF> bounced = is_asked ? std::span(arriving) : std::span<const RgbF>{};
     const PointIrradianceInput lighting{input_.rays,
                                         hits.points,
                                         hits.keys,
                                         lights_,
-                                        double(field.eta()),
+                                        boundary,
                                         batch.light_samples,
                                         point_irradiance_seed(input_.scene.settings),
                                         {},
@@ -123,23 +126,25 @@ Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::
     write(hits, field.at(hits, lighting, pass, known), batch.rays, batch.out);
     if (!batch.bounced_further.empty() && !bounced.empty()) write_further(hits, bounced, batch);
     if (field.asks_samples()) result.queries += hits.points.size();
+    if (shows_fuzz) add_fuzz(hits, boundary, arriving, batch);
     if (batch.specular == Specular::uniform) add_evenly_mirrored(hits, batch);
-    if (batch.specular == Specular::traced && field.eta() > 0 && field.eta() != 1)
+    if (batch.specular == Specular::traced && boundary.eta() > 0 && boundary.eta() != 1)
       add_specular(hits, batch, pass, known);
   }
   return result;
 }
 
-std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
+std::vector<RgbF> Shader::bounced_at(const SurfaceHits& hits, const OuterBoundary& boundary, const Pass& pass,
                                      HeldView::Surface* held) const {
-  if (!pass.is_seen) return bounced_further(hits, eta, held);
-  if (bounced_ != nullptr) return bounced_->at(hits, eta, held);
+  if (!pass.is_seen) return bounced_further(hits, boundary, held);
+  if (bounced_ != nullptr) return bounced_->at(hits, boundary, held);
   if (pass.gathers == nullptr) return {};
-  return gathered_irradiance({input_.rays, *pass.gathers, hits.points, hits.keys, eta, 1,
+  return gathered_irradiance({input_.rays, *pass.gathers, hits.points, hits.keys, boundary, 1,
                               hash_bits(point_irradiance_seed(input_.scene.settings), kGatheringSeed)});
 }
 
-std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, float eta, HeldView::Surface* held) const {
+std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, const OuterBoundary& boundary,
+                                          HeldView::Surface* held) const {
   constexpr float kMostLikely = .9f;  // probability to continue a path; ends it in white rooms
   std::vector<RgbF> irradiance(hits.points.size());
   std::vector<SurfacePoint> points;
@@ -160,7 +165,7 @@ std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, float eta, He
   if (chosen.empty()) return irradiance;
   const bool is_kept = held != nullptr && input_.view->keeps_further_bounces;
   const std::vector<RgbF> gathered =
-      gathered_irradiance({input_.rays, *this, points, keys, eta, 1,
+      gathered_irradiance({input_.rays, *this, points, keys, boundary, 1,
                            hash_bits(point_irradiance_seed(input_.scene.settings), kFurtherSeed),
                            is_kept ? &gathering_of(held->gathering, chosen) : nullptr, input_.view});
   for (std::size_t k = 0; k < chosen.size(); ++k) irradiance[chosen[k]] = gathered[k] * (1 / probability[k]);
@@ -202,8 +207,9 @@ std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedR
       {.rays = rays, .keys = keys, .out = lights, .spread = pixel_spread_, .is_of_camera = true}, nullptr);
   std::vector<SeenSurfaces> seen;
   for (std::size_t f = 0; f < hits.size(); ++f)
-    if (!hits[f].points.empty() && fields_.all[f]->asks_irradiance())
-      seen.push_back({f, std::move(hits[f]), fields_.all[f]->eta()});
+    if (!hits[f].points.empty() &&
+        (fields_.all[f]->asks_irradiance() || fields_.all[f]->boundary().has_fuzz()))
+      seen.push_back({f, std::move(hits[f]), fields_.all[f]->boundary()});
   return seen;
 }
 
@@ -294,7 +300,8 @@ void Shader::write(const SurfaceHits& hits, const LeavingLight& light, std::span
     const SurfacePoint& point = hits.points[i];
     PixelSample& sample = out[hits.rays[i]];
     const float cosine = cos_view(point, ray.direction);
-    RgbF radiance(appearance.radiance_of_exitance(cosine));
+    RgbF radiance = appearance.boundary.has_fuzz() ? appearance.radiance_past_fuzz(cosine)
+                                                   : RgbF(appearance.radiance_of_exitance(cosine));
     if (!is_plain && !light.is_tinted) radiance = radiance * hits.textures[i].tint.leaving;
     if (appearance.exit) radiance = radiance * scattered_exit(*appearance.exit, cosine, hits, light, i);
     sample.diffuse = light.exitance[i] * radiance;

@@ -64,12 +64,11 @@ class Shader {
   std::vector<RgbF> radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                    HeldView::Batch* held, std::span<RgbF> further) const;
 
-  /// Hits with exitance depending on the irradiance at the hit itself. eta: of the boundary transmitting it;
-  /// 0: none.
+  /// Hits with exitance depending on the irradiance at the hit itself.
   struct SeenSurfaces {
     std::size_t field;
     SurfaceHits hits;
-    float eta;
+    OuterBoundary boundary;
   };
   std::vector<SeenSurfaces> surfaces_along(std::span<const TracedRay> rays,
                                            std::span<const std::uint64_t> keys) const;
@@ -103,13 +102,18 @@ class Shader {
                     SurfaceHits& hits) const;
   Appearance appearance_of(const SurfaceHits& hits, std::size_t i) const;
   /// Light from other surfaces at hits; empty: none.
-  std::vector<RgbF> bounced_at(const SurfaceHits& hits, float eta, const Pass& pass,
+  std::vector<RgbF> bounced_at(const SurfaceHits& hits, const OuterBoundary& boundary, const Pass& pass,
                                HeldView::Surface* held) const;
   /// The same at hits of gathered rays: by one ray from some of them, chosen in proportion to their albedo.
-  std::vector<RgbF> bounced_further(const SurfaceHits& hits, float eta, HeldView::Surface* held) const;
+  std::vector<RgbF> bounced_further(const SurfaceHits& hits, const OuterBoundary& boundary,
+                                    HeldView::Surface* held) const;
   void write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,
              std::span<PixelSample> out) const;
   static void write_further(const SurfaceHits& hits, std::span<const RgbF> bounced, const RayBatch& batch);
+  /// Light reflected by fibres.
+  /// in    arriving: light from other surfaces transmitted by the boundary, at each hit; empty: none
+  void add_fuzz(const SurfaceHits& hits, const OuterBoundary& boundary, std::span<const RgbF> arriving,
+                const RayBatch& batch) const;
   // Specular reflection: shade_specular.cpp.
   void add_specular(const SurfaceHits& hits, const RayBatch& batch, const Pass& pass,
                     HeldView::Surface* held) const;

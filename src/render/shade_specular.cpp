@@ -154,13 +154,15 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
     const bool is_plain = hits.textures.empty();
     const Appearance textured = is_plain ? Appearance{} : appearance_of(hits, i);
     const Appearance& appearance = is_plain ? appearances_[hits.hits[i].mesh] : textured;
-    if (!appearance.mirrors()) continue;
+    if (!appearance.mirrors() && !appearance.boundary.has_fuzz()) continue;
     const float cosine = cos_view(hits.points[i], batch.rays[hits.rays[i]].ray.direction);
     PixelSample& sample = batch.out[hits.rays[i]];
-    RgbF arriving = sample.irradiance * (kInversePi / (1 - appearance.average_reflectance));
+    RgbF arriving = sample.irradiance *
+                    (kInversePi / ((1 - appearance.average_reflectance) * appearance.boundary.past_fuzz()));
     // Without an irradiance in the field, it follows from the exitance: outgoing light over that of uniform
     // illumination. Light leaving a face in shadow may come from inside alone.
-    const float leaving = appearance.translucent ? 1 - appearance.reflectance(cosine) : 0;
+    const float past_fuzz = appearance.boundary.past_fuzz(cosine);
+    const float leaving = appearance.translucent ? past_fuzz * (1 - appearance.reflectance(cosine)) : 0;
     if (arriving == RgbF{} && leaving > 0 && may_be_lit(lights_, hits.points[i])) {
       for (std::size_t c = 0; c < 3; ++c)
         if (appearance.albedo[c] > 0) arriving[c] = sample.diffuse[c] / (leaving * appearance.albedo[c]);
@@ -168,7 +170,9 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
       if (min_component(appearance.albedo) < kDark)
         arriving = component_min(arriving, unshadowed_irradiance(lights_, hits.points[i]) * kInversePi);
     }
-    sample.specular += arriving * appearance.mirrored_share(cosine);
+    if (appearance.mirrors())
+      sample.specular += arriving * appearance.mirrored_share(cosine) * (past_fuzz * past_fuzz);
+    sample.specular += arriving * appearance.fuzz_share(cosine);
   }
 }
 
@@ -188,8 +192,10 @@ void Shader::add_mirrored(const SurfaceHits& hits, const RayBatch& batch, const 
     const bool is_plain = hits.textures.empty();
     const Appearance textured = is_plain ? Appearance{} : appearance_of(hits, i);
     const Appearance& appearance = is_plain ? appearances_[hits.hits[i].mesh] : textured;
-    const RgbF share = appearance.mirror_color(cosine) * appearance.reflectance(cosine);
-    batch.out[hits.rays[i]].specular = (seen[i].diffuse + seen[i].specular + seen[i].emitted) * share;
+    const float past_fuzz = appearance.boundary.past_fuzz(cosine);
+    const RgbF share =
+        appearance.mirror_color(cosine) * (appearance.reflectance(cosine) * past_fuzz * past_fuzz);
+    batch.out[hits.rays[i]].specular += (seen[i].diffuse + seen[i].specular + seen[i].emitted) * share;
   }
 }
 
@@ -253,6 +259,11 @@ struct Shader::GlossyHits {
     return appearances[i]->mirror_color(dot(frames[i].view, normalized(frames[i].view + light)),
                                         boundary(i).reflected_once(frames[i].view.z));
   }
+  // Light past the fuzz on both ways.
+  float past_fuzz(std::size_t i, const Vec3f& light) const {
+    const OuterBoundary& outer = appearances[i]->boundary;
+    return outer.has_fuzz() ? outer.past_fuzz(frames[i].view.z) * outer.past_fuzz(light.z) : 1;
+  }
   RgbF& specular(std::size_t i) const { return batch.out[hits.rays[i]].specular; }
   // Sampling densities of the lobe and of a light, times their number of samples, 1/sr.
   float of_lobe(std::size_t i, const Vec3f& towards) const {
@@ -286,7 +297,8 @@ struct Shader::GlossyHits {
         if (!(weight > 0 && (height > 0 || is_again))) continue;
         if (is_again) towards = towards - hits.points[i].geometric * (2 * height);
         rays.push_back(leaving(hits.points[i], towards));
-        drawn.push_back({weight / float(facets), color(i, direction), std::uint32_t(i), is_again});
+        drawn.push_back({weight / float(facets) * past_fuzz(i, direction), color(i, direction),
+                         std::uint32_t(i), is_again});
       }
     }
     return drawn;
@@ -341,7 +353,8 @@ void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) cons
         const Vec3f local = glossy.frames[i].local(towards);
         const float share =
             is_delta(light) ? 1 : power(glossy.of_light(i, light, towards), glossy.of_lobe(i, towards));
-        const float value = glossy.boundary(i).value(glossy.frames[i].view, local) / local.z;
+        const float value =
+            glossy.boundary(i).value(glossy.frames[i].view, local) / local.z * glossy.past_fuzz(i, local);
         const float weight = irradiance * value * share;
         glossy.specular(i) += emitted_[l] * glossy.color(i, local) * weight;
         if (coat != nullptr) coat->lights.push_back({glossy.hits.rays[i], std::uint32_t(l), 1, weight});

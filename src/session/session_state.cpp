@@ -380,6 +380,7 @@ void Session::State::arrange_bodies() {
     }
     bodies[g].plan = plan;
     bodies[g].profile = make_diffuse_profile(scene_.media[plan.medium], world_->unit);
+    bodies[g].boundary = boundary_of(scene_.media[plan.medium]);
   }
   bodies_ = std::move(bodies);
   keys_ = std::move(keys);

@@ -74,12 +74,20 @@ StageKey carried_samples_key(const StageKey& from, const BodyPlan& group, std::s
   return key.key();
 }
 
+/// Adds the boundary of a medium or opaque shape.
+void add_boundary(KeyBuilder& key, double eta, const Fuzz& fuzz) {
+  key.add(eta);
+  if (fuzz.weight > 0) key.add(std::string("fuzz")).add(fuzz.weight).add(fuzz.roughness);
+}
+
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light) {
   const BodyPlan& plan = input.plan.groups[group];
   KeyBuilder key("transfer", kTransferVersion);
   key.add(embree_version()).add(std::string(widest_instructions()));
-  key.add(samples).add(input.scene.media[plan.medium].eta).add(std::uint64_t(light.source.index()));
+  const Medium& medium = input.scene.media[plan.medium];
+  add_boundary(key.add(samples), medium.eta, medium.fuzz);
+  key.add(std::uint64_t(light.source.index()));
   key.add_array(std::span<const double>(geometry(light)));
   if (!is_delta(light))
     key.add(settings_in_key(KeyedStage::transfers, input.scene))
@@ -104,10 +112,13 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
     if (shape.medium) {
       const Medium& medium = input.scene.media[*shape.medium];
       for_each_textured(medium, add_value);
-      key.add(medium.texture_mix).add(medium.eta).add(medium.grain.anisotropy).add(medium.grain.rotation);
+      add_boundary(key.add(medium.texture_mix), medium.eta, medium.fuzz);
+      if (medium.fuzz.weight > 0) key.add(medium.fuzz.color);
+      key.add(medium.grain.anisotropy).add(medium.grain.rotation);
     } else if (const auto& gloss = shape.gloss) {
       key.add(gloss->eta).add(gloss->grain.anisotropy).add(gloss->grain.rotation);
     }
+    if (shape.fuzz.weight > 0) add_boundary(key, 0, shape.fuzz), key.add(shape.fuzz.color);
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
     if (uvs_of(input.scene, shape) != MeshUvs::unread) add_coordinates(key, input.world.meshes[i]);
     if (uses_vertex_colors(input.scene, shape, input.world.meshes[i]))
@@ -158,15 +169,17 @@ StageKey view_near_key(const PrecomputeInput& input, std::span<const MeshKeys> m
 
 StageKey view_coats_key(const Scene& scene) {
   KeyBuilder key("coats of the view", 1);
-  const auto add_boundary = [&key](const auto& value, const auto&, SurfacePart part) {
+  const auto add_part = [&key](const auto& value, const auto&, SurfacePart part) {
     if (part == SurfacePart::boundary) key.add(value);
   };
   for (const Shape& shape : scene.shapes) {
-    for_each_textured(shape, add_boundary);
+    for_each_textured(shape, add_part);
     if (shape.gloss) key.add(shape.gloss->grain.anisotropy).add(shape.gloss->grain.rotation);
+    if (shape.fuzz.weight > 0) add_boundary(key, 0, shape.fuzz);
     if (!shape.medium) continue;
     const Medium& medium = scene.media[*shape.medium];
-    for_each_textured(medium, add_boundary);
+    if (medium.fuzz.weight > 0) add_boundary(key, 0, medium.fuzz);
+    for_each_textured(medium, add_part);
     key.add(medium.grain.anisotropy).add(medium.grain.rotation);
   }
   return key.key();

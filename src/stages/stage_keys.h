@@ -46,6 +46,7 @@ StageKey carried_samples_key(const StageKey& from, const BodyPlan& group, std::s
 /// without its colour, the index of refraction, random numbers, and every mesh possibly shadowing the body
 /// from this light. Includes Embree's version and the machine's instruction set, which affect shadow rays.
 /// in    light: recentred
+void add_boundary(KeyBuilder& key, double eta, const Fuzz& fuzz);
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light);
 

@@ -50,12 +50,11 @@ struct LeavingLight {
 class Field {
  public:
   virtual ~Field() = default;
-  /// in    lighting: of the hits' points, with the boundary of eta()
+  /// in    lighting: of the hits' points, with the boundary()
   ///       held: cached results for the same hits, extended; or null
   virtual LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                           HeldView::Surface* held) const = 0;
-  /// Index of refraction of the transmitting boundary; 0: none, an opaque surface.
-  virtual float eta() const = 0;
+  virtual OuterBoundary boundary() const = 0;
   /// True if the exitance depends on the irradiance at the hits themselves.
   virtual bool asks_irradiance() const { return false; }
   /// True if a part of the exitance at any hit is reflected irradiance.

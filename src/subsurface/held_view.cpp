@@ -70,19 +70,20 @@ void HeldView::forget_coats() {
   *coat_bytes = 0;
 }
 
-void HeldView::set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta) {
-  if (of_mesh == field_of_mesh && eta == eta_of_field) return;
+void HeldView::set_fields(const std::vector<std::size_t>& of_mesh,
+                          const std::vector<OuterBoundary>& boundaries) {
+  if (of_mesh == field_of_mesh && boundaries == boundary_of_field) return;
   forget_coats();  // they contain light of the other surfaces
-  if (of_mesh != field_of_mesh || eta.size() != eta_of_field.size()) {
+  if (of_mesh != field_of_mesh || boundaries.size() != boundary_of_field.size()) {
     forget_surfaces();
   } else {
     visit_batches(*this, [&](Batch& batch) {
       for (std::size_t f = 0; f < batch.surfaces.size(); ++f)
-        if (eta[f] != eta_of_field[f]) batch.surfaces[f] = {};
+        if (boundaries[f] != boundary_of_field[f]) batch.surfaces[f] = {};
     });
   }
   field_of_mesh = of_mesh;
-  eta_of_field = eta;
+  boundary_of_field = boundaries;
 }
 
 void HeldView::set_lights(std::span<const std::optional<std::size_t>> before) {

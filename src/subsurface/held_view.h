@@ -117,10 +117,10 @@ struct HeldView {
   std::vector<std::shared_ptr<IrradianceLattice>> lattices;
 
   std::vector<std::size_t> field_of_mesh;  ///< index of HeldView::Batch::surfaces
-  std::vector<float> eta_of_field;         ///< eta of the transmitting boundary; 0: none
+  std::vector<OuterBoundary> boundary_of_field;
 
   /// Sets the fields. Results for the same meshes with the same boundary remain valid.
-  void set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<float>& eta);
+  void set_fields(const std::vector<std::size_t>& of_mesh, const std::vector<OuterBoundary>& boundaries);
 
   /// Discards all results depending on the camera.
   void forget_camera();

@@ -82,6 +82,7 @@ class BodyWalks::Walker {
       const std::optional<BoundaryPoint> met = body_.inside_.entry(from, direction);
       if (!met) return;
       const double cosine = std::min(1.0, -dot(met->normal, direction));
+      weight *= double(body_.input_.boundary.past_fuzz(float(cosine)));
       if (outside_numbers_.next() >= fresnel_reflectance(cosine, medium_.eta)) {
         pending_.push_back({met->inside(), refracted_inward(direction, met->normal, medium_.eta), weight, 0});
         return;
@@ -172,7 +173,9 @@ class BodyWalks::Walker {
       return;
     }
     counts_.flux[body_.cells_.at(Vec3f(point.position), Vec3f(point.normal))] += float(weight);
-    send_outside(point, refracted_outward(direction, point.normal, medium_.eta), weight);
+    const Vec3d outward = refracted_outward(direction, point.normal, medium_.eta);
+    send_outside(point, outward,
+                 weight * double(body_.input_.boundary.past_fuzz(float(dot(outward, point.normal)))));
   }
 
   const BodyWalks& body_;
@@ -224,6 +227,8 @@ WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chu
     if (irradiance > 0 && input_.entering_tint)
       irradiance *= double(input_.entering_tint(at.mesh, at.triangle, at.u, at.v)[job.channel]);
     if (!(irradiance > 0)) continue;
+    if (input_.boundary.has_fuzz())
+      irradiance *= double(input_.boundary.past_fuzz(float(-dot(light.direction, Vec3d(entry.geometric)))));
     Walker(*this, job.channel, exits, counts, WalkNumbers(job.seed + 1 + 2 * job.channel, start),
            WalkNumbers(job.seed + 2 + 2 * job.channel, start), irradiance)
         .arrive(inside_.at(entry), light, irradiance);

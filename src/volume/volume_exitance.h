@@ -14,6 +14,7 @@
 #include "opaline/scene.h"
 #include "sampling/sample_surface.h"
 #include "transport/medium.h"
+#include "transport/outer_boundary.h"
 #include "volume/media_inside.h"
 
 namespace opaline {
@@ -31,6 +32,7 @@ struct VolumeInput {
   bool reenter = true;  ///< enables re-entry of light into the body
   /// Factor on incident light by position: mesh, triangle and barycentrics. Empty: none.
   std::function<RgbF(std::uint32_t mesh, std::uint32_t triangle, float u, float v)> entering_tint = {};
+  OuterBoundary boundary = {};    ///< of `media`; with fuzz, less light enters
   MediaInside media_inside = {};  ///< heterogeneous medium, with `media` about its mean. Empty: homogeneous
 };
 

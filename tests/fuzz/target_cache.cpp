@@ -62,7 +62,7 @@ void look_up(const SurfaceCache& exitance, const World& world, std::uint32_t mes
 
 void evaluate_with(const Octree& tree, const Computed& computed) {
   const Body& known = computed.group();
-  Body group{known.plan, known.profile, known.surface, known.transfers, known.entering};
+  Body group{known.plan, known.profile, known.boundary, known.surface, known.transfers, known.entering};
   hierarchical_state(group).kernels = hierarchical_state(known).kernels;
   hierarchical_state(group).tree.value = tree;
   for (const EvaluatorKind evaluator : {EvaluatorKind::dual_tree, EvaluatorKind::classic}) {

@@ -102,9 +102,10 @@ class DirectRenderer {
   static std::vector<FieldSource> make_sources(std::span<const EntrySampler> samplers) {
     std::vector<FieldSource> sources;
     for (const EntrySampler& sampler : samplers)
-      sources.push_back({sampler.meshes(), [&sampler](const SurfaceTextures& textures, float eta) {
-                           return std::make_unique<DirectField>(sampler, textures, eta);
-                         }});
+      sources.push_back(
+          {sampler.meshes(), [&sampler](const SurfaceTextures& textures, const OuterBoundary& boundary) {
+             return std::make_unique<DirectField>(sampler, textures, boundary);
+           }});
     return sources;
   }
 

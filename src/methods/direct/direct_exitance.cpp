@@ -61,14 +61,14 @@ void add_bounced_light(const DirectExitanceInput& input, const PointIrradianceIn
                        std::span<const Entry> entries, std::span<const std::size_t> exits,
                        std::vector<RgbF>& exitance) {
   constexpr std::uint64_t kSeed = 5;
-  for_each_gathered(
-      {at.rays, *input.gathers, at.points, at.keys, float(at.eta), 1, hash_bits(at.seed, kSeed)},
-      [&](const SurfaceLight& light) {
-        const Entry& entry = entries[light.point];
-        const std::size_t exit = exits[light.point];
-        const RgbF weight = weight_of(input.sampler, input.exits.points[exit], entry, light.towards);
-        exitance[exit] += weight * light.irradiance * entry.tint;
-      });
+  for_each_gathered({at.rays, *input.gathers, at.points, at.keys, at.boundary, 1, hash_bits(at.seed, kSeed)},
+                    [&](const SurfaceLight& light) {
+                      const Entry& entry = entries[light.point];
+                      const std::size_t exit = exits[light.point];
+                      const RgbF weight =
+                          weight_of(input.sampler, input.exits.points[exit], entry, light.towards);
+                      exitance[exit] += weight * light.irradiance * entry.tint;
+                    });
 }
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace opaline {
 
 class DirectField : public Field {
  public:
-  DirectField(const EntrySampler& sampler, const SurfaceTextures& textures, float eta)
-      : sampler_(sampler), textures_(textures), eta_(eta) {}
+  DirectField(const EntrySampler& sampler, const SurfaceTextures& textures, const OuterBoundary& boundary)
+      : sampler_(sampler), textures_(textures), boundary_(boundary) {}
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface*) const override {
@@ -22,12 +22,12 @@ class DirectField : public Field {
             .bias = {},
             .is_tinted = false};
   }
-  float eta() const override { return eta_; }
+  OuterBoundary boundary() const override { return boundary_; }
 
  private:
   const EntrySampler& sampler_;
   const SurfaceTextures& textures_;
-  float eta_;
+  OuterBoundary boundary_;
 };
 
 }  // namespace opaline

@@ -19,7 +19,7 @@ class SampleField : public Field {
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
-  float eta() const override { return float(group_.profile.eta); }
+  OuterBoundary boundary() const override { return group_.boundary; }
   bool asks_irradiance() const override { return asks_irradiance_; }
   bool asks_samples() const override { return true; }
 

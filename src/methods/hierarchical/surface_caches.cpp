@@ -98,7 +98,7 @@ void OwnLight::add_to_chunk(std::span<const SurfacePoint> points, std::span<Exit
                                 points,
                                 keys,
                                 lights_,
-                                input_.scene.media[group_.plan.medium].eta,
+                                group_.boundary,
                                 settings.light_samples,
                                 point_irradiance_seed(settings),
                                 variance};

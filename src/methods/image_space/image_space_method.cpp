@@ -34,19 +34,19 @@ class ImageSpaceField : public Field {
  public:
   ImageSpaceField(const RenderInput& input, const Body& body)
       : input_(input),
-        eta_(float(body.profile.eta)),
+        boundary_(body.boundary),
         total_(body.profile.total),
         lit_(state_of<ImageSpaceState>(body).lit.value) {}
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
-  float eta() const override { return eta_; }
+  OuterBoundary boundary() const override { return boundary_; }
   bool asks_irradiance() const override { return true; }
   bool reflects() const override { return true; }
 
  private:
   const RenderInput& input_;
-  float eta_;
+  OuterBoundary boundary_;
   RgbF total_;
   const ImageSpaceState::Lit& lit_;
 };
@@ -91,6 +91,7 @@ StageKey lit_key(const BodyStages& stages, double spacing) {
   const Medium& medium = scene.media[stages.body.plan.medium];
   KeyBuilder key("light views", kVersion);
   add_profile(key, medium);
+  add_boundary(key, medium.eta, medium.fuzz);
   key.add(spacing).add(world.diagonal).add(world.unit);
   key.add(settings_in_key(KeyedStage::transfers, scene)).add(settings_in_key(KeyedStage::kernel, scene));
   for (const MeshKeys& mesh : stages.mesh_keys) key.add(mesh.all);

@@ -11,7 +11,6 @@
 #include "core/random.h"
 #include "irradiance/shadow_batch.h"
 #include "lights/shared_rays.h"
-#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {
@@ -152,7 +151,7 @@ class Views {
   Views(const PrecomputeInput& input, const BodyPlan& body)
       : input_(input),
         textures_(input.scene, input.world),
-        eta_(float(input.scene.media[body.medium].eta)),
+        boundary_(boundary_of(input.scene.media[body.medium])),
         is_own_(input.world.meshes.size()) {
     for (const std::uint32_t mesh : body.meshes) is_own_[mesh] = true;
   }
@@ -206,12 +205,12 @@ class Views {
       emitted = emitted * textures_.tint(place).entering;
     }
     points.push_back({point.position, across / std::max(facing, kLeastCosine),
-                      emitted * (cosine * fresnel_transmittance(cosine, eta_)), point.normal});
+                      emitted * (cosine * boundary_.transmittance(cosine)), point.normal});
   }
 
   const PrecomputeInput& input_;
   SurfaceTextures textures_;
-  float eta_;
+  OuterBoundary boundary_;
   std::vector<bool> is_own_;
 };
 

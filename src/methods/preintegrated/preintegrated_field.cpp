@@ -13,7 +13,6 @@
 #include "lights/light.h"
 #include "lights/shared_rays.h"
 #include "subsurface/body_stages.h"
-#include "transport/fresnel.h"
 #include "transport/half_space.h"
 
 namespace opaline {
@@ -40,6 +39,14 @@ template <class Value>
 Value at_hit(const Mesh& mesh, std::span<const Value> at_vertices, const Hit& hit) {
   const auto& [a, b, c] = mesh.triangles[hit.triangle];
   return at_vertices[a] * (1 - hit.u - hit.v) + at_vertices[b] * hit.u + at_vertices[c] * hit.v;
+}
+
+// Light past the fuzz. At grazing angles and beyond, it enters elsewhere on the body, from many sides.
+float past_fuzz(const OuterBoundary& boundary, float cosine) {
+  constexpr float kGrazing = .3f;
+  if (!boundary.has_fuzz()) return 1;
+  const float here = std::clamp(cosine / kGrazing, 0.f, 1.f);
+  return boundary.past_fuzz(std::max(cosine, kGrazing)) * here + boundary.past_fuzz() * (1 - here);
 }
 
 }  // namespace
@@ -82,7 +89,7 @@ PreintegratedField::PreintegratedField(const RenderInput& input, const Body& bod
       world_(input.world),
       medium_(*state_of<PreintegratedState>(body).response.value),
       surfaces_(input.world.meshes.size()),
-      eta_(float(body.profile.eta)),
+      boundary_(body.boundary),
       samples_per_pixel_(input.scene.film.samples_per_pixel) {
   const std::vector<SmoothSurface>& surfaces = state_of<PreintegratedState>(body).surfaces.value;
   for (std::size_t m = 0; m < surfaces.size(); ++m) surfaces_[body.plan.meshes[m]] = &surfaces[m];
@@ -162,11 +169,10 @@ void PreintegratedField::add_unoccluded(std::span<const SurfacePoint> points, st
   for (std::size_t r = 0; r < shadow.size(); ++r) {
     if (shadow[r].far < 0) continue;
     const Incident& light = incident[numbers[r]];
-    result.exitance[light.hit] += returned[r] * light.irradiance;
     const float cosine = std::min(1.f, dot(points[light.hit].normal, light.towards));
+    result.exitance[light.hit] += returned[r] * light.irradiance * past_fuzz(boundary_, cosine);
     if (cosine > 0)
-      result.irradiance[light.hit] +=
-          light.irradiance * (cosine * (eta_ > 0 ? fresnel_transmittance(cosine, eta_) : 1));
+      result.irradiance[light.hit] += light.irradiance * (cosine * boundary_.transmittance(cosine));
   }
 }
 

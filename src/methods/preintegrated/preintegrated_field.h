@@ -41,7 +41,7 @@ class PreintegratedField : public Field {
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
-  float eta() const override { return eta_; }
+  OuterBoundary boundary() const override { return boundary_; }
   bool asks_irradiance() const override { return true; }
   bool reflects() const override { return true; }
 
@@ -74,7 +74,7 @@ class PreintegratedField : public Field {
   const World& world_;
   const MediumResponse& medium_;
   std::vector<const SmoothSurface*> surfaces_;  // one per mesh of the world; null: in another body
-  float eta_;
+  OuterBoundary boundary_;
   int samples_per_pixel_;
 };
 

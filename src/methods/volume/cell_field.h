@@ -17,7 +17,7 @@ class CellField : public Field {
   /// The error is the sum of the means' noise and the interpolation error.
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
-  float eta() const override { return float(body_.profile.eta); }
+  OuterBoundary boundary() const override { return body_.boundary; }
   bool asks_irradiance() const override { return local_ != RgbF{}; }
   bool reflects() const override { return asks_irradiance(); }
 

@@ -65,6 +65,7 @@ VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span
     if (!(body.profile.total[c] > 0)) continue;
     walks.media[c] = walked_medium({body.profile.mean_free_path[c], absorbed[c], body.profile.eta}, g, least);
   }
+  walks.boundary = body.boundary;
   walks.until_error = settings.until_error;
   walks.seed = hash_bits(settings.seed, 3000);
   walks.monitor = input.monitor;

@@ -6,9 +6,9 @@
 
 namespace opaline {
 
-LocalField::LocalField(const RenderInput& input, std::span<const RgbF> albedos, float eta)
+LocalField::LocalField(const RenderInput& input, std::span<const RgbF> albedos, const OuterBoundary& boundary)
     : albedos_(albedos.begin(), albedos.end()),
-      eta_(eta),
+      boundary_(boundary),
       estimates_error_(method_of(input.scene.settings.method).layers().error),
       is_noisy_(has_area_lights(input.scene)),
       samples_per_pixel_(input.scene.film.samples_per_pixel) {}

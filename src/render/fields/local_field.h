@@ -10,17 +10,17 @@ namespace opaline {
 class LocalField : public Field {
  public:
   /// albedos: of each mesh of the world, the reflectance or the total diffuse reflectance.
-  LocalField(const RenderInput& input, std::span<const RgbF> albedos, float eta);
+  LocalField(const RenderInput& input, std::span<const RgbF> albedos, const OuterBoundary& boundary);
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
-  float eta() const override { return eta_; }
+  OuterBoundary boundary() const override { return boundary_; }
   bool asks_irradiance() const override { return true; }
   bool reflects() const override { return true; }
 
  private:
   std::vector<RgbF> albedos_;
-  float eta_;
+  OuterBoundary boundary_;
   bool estimates_error_, is_noisy_;
   int samples_per_pixel_;
 };

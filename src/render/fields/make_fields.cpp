@@ -32,7 +32,7 @@ std::vector<const Body*> bodies_of_meshes(const RenderInput& input) {
 struct SurfaceKind {
   const Body* group = nullptr;
   const FieldSource* source = nullptr;
-  float eta = 0;
+  OuterBoundary boundary = {};
   bool is_partly_opaque = false;
   friend bool operator==(const SurfaceKind&, const SurfaceKind&) = default;
 };
@@ -40,9 +40,10 @@ struct SurfaceKind {
 SurfaceKind kind_of(const RenderInput& input, std::span<const FieldSource> sources, const Body* body,
                     std::size_t mesh) {
   const Shape& shape = input.scene.shapes[mesh];
-  if (!shape.medium) return {.eta = shape.gloss ? float(shape.gloss->eta) : 0};
+  if (!shape.medium) return {.boundary = boundary_of_opaque(shape)};
   const Medium& medium = input.scene.media[*shape.medium];
-  SurfaceKind kind{.group = body, .eta = float(medium.eta), .is_partly_opaque = is_partly_opaque(medium)};
+  SurfaceKind kind{
+      .group = body, .boundary = boundary_of(medium), .is_partly_opaque = is_partly_opaque(medium)};
   for (const FieldSource& source : sources)
     if (has_mesh(source.meshes, mesh)) kind.source = &source;
   return kind;
@@ -51,8 +52,8 @@ SurfaceKind kind_of(const RenderInput& input, std::span<const FieldSource> sourc
 std::unique_ptr<Field> make_field(const RenderInput& input, const SurfaceKind& kind,
                                   const SurfaceTextures& textures, std::span<const RgbF> albedos) {
   if (kind.group != nullptr) return method_of(kind.group->plan.method).field(input, *kind.group);
-  if (kind.source != nullptr) return kind.source->make(textures, kind.eta);
-  return std::make_unique<LocalField>(input, albedos, kind.eta);
+  if (kind.source != nullptr) return kind.source->make(textures, kind.boundary);
+  return std::make_unique<LocalField>(input, albedos, kind.boundary);
 }
 
 std::vector<RgbF> albedos_of(const Scene& scene) {

@@ -15,8 +15,8 @@ namespace opaline {
 /// Field of some meshes, from a method without bodies.
 struct FieldSource {
   std::span<const std::uint32_t> meshes;
-  /// in    textures: must outlive the field; eta: of the boundary
-  std::function<std::unique_ptr<Field>(const SurfaceTextures& textures, float eta)> make;
+  /// in    textures: must outlive the field
+  std::function<std::unique_ptr<Field>(const SurfaceTextures& textures, const OuterBoundary& boundary)> make;
 };
 
 struct Fields {

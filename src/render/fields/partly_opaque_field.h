@@ -15,7 +15,7 @@ class PartlyOpaqueField : public Field {
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
-  float eta() const override { return inside_->eta(); }
+  OuterBoundary boundary() const override { return inside_->boundary(); }
   bool asks_irradiance() const override { return true; }
   bool reflects() const override { return true; }
   bool asks_samples() const override { return inside_->asks_samples(); }

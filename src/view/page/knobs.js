@@ -14,8 +14,9 @@ const kForms = {
 const kNumbers = ["number", "whole_number", "length"], kThrees = ["point", "triple"];
 const kColours = ["color", "number_or_triple"];
 // Visible if the scene has such values.
-const kOptional = ["base_color", "specular_anisotropy", "specular_rotation", "tint", "texture_mix", "thickness", "fit"];
-const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_weight", "specular_anisotropy", "specular_rotation"];
+const kFuzz = ["fuzz_weight", "fuzz_color", "fuzz_roughness"];
+const kOptional = [...kFuzz, "base_color", "specular_anisotropy", "specular_rotation", "tint", "texture_mix", "thickness", "fit"];
+const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_weight", "specular_anisotropy", "specular_rotation", ...kFuzz];
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
 const kWidestLinear = 1000, kDecade = 1;
 

@@ -82,13 +82,15 @@ NearFieldSampler::NearFieldSampler(const Body& group, int light_samples,
       near_(group),
       is_own_mesh_(*std::ranges::max_element(group.plan.meshes) + 1) {
   for (const std::uint32_t mesh : group.plan.meshes) is_own_mesh_[mesh] = true;
-  const double spacing = kCoarsest * double(near_.narrowest), eta = double(float(group.profile.eta));
+  const double spacing = kCoarsest * double(near_.narrowest);
   const int of_place = std::max(1, light_samples / kFewerRays);
-  if (held != nullptr && *held != nullptr && (*held)->is_of(is_own_mesh_, spacing, eta, of_place)) {
+  if (held != nullptr && *held != nullptr &&
+      (*held)->is_of(is_own_mesh_, spacing, group.boundary, of_place)) {
     lattice_ = *held;
     return;
   }
-  lattice_ = std::make_shared<IrradianceLattice>(is_own_mesh_, spacing, eta, of_place, held != nullptr);
+  lattice_ =
+      std::make_shared<IrradianceLattice>(is_own_mesh_, spacing, group.boundary, of_place, held != nullptr);
   if (held != nullptr) *held = lattice_;
 }
 
