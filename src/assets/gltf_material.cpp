@@ -199,6 +199,7 @@ class MaterialTranslator {
     const double ior = index_of_refraction();
     if (ior != kGltfIor) surface.keys["specular_ior"] = ior;
     add_specular_weight(surface.keys);
+    add_fuzz(surface.keys);
     translated(fmt::format("{} -> reflectance {}, metalness {:.3g}, specular_roughness {:.3g} (opaque)",
                            has(kSpecularGlossiness) ? "diffuseFactor, specularFactor, glossinessFactor"
                                                     : "baseColorFactor, metallicFactor, roughnessFactor",
@@ -225,6 +226,21 @@ class MaterialTranslator {
       not_carried(
           "anisotropyStrength where the roughness is not roughnessFactor: both alphas follow the texture");
     return mean;
+  }
+
+  /// The sheen's colour is the fibres' albedo, with its largest channel as the weight. Its lobe (Estevez & Kulla
+  /// 2017) has another shape.
+  void add_fuzz(Json& keys) {
+    const GltfRecord sheen = values("KHR_materials_sheen");
+    const Vec3d color = color_of(sheen, "sheenColorFactor", Vec3d(0));
+    const double weight = max_component(color), roughness = sheen.number("sheenRoughnessFactor", 0);
+    if (!(weight > 0)) return;
+    keys["fuzz_weight"] = weight;
+    keys["fuzz_color"] = triple_json(color * (1 / weight));
+    keys["fuzz_roughness"] = roughness;
+    translated(fmt::format(
+        "sheenColorFactor {}, sheenRoughnessFactor {:.3g} -> fuzz_weight {:.3g}, fuzz_color, fuzz_roughness",
+        short_triple(color), roughness, weight));
   }
 
   void add_specular_weight(Json& keys) {
@@ -286,6 +302,7 @@ class MaterialTranslator {
       if (color != Vec3d(1)) not_carried("diffuseTransmissionColorFactor " + short_triple(color));
     }
     add_specular_weight(surface.medium);
+    add_fuzz(surface.medium);
     if (std::optional<Json> rough =
             channel(texture(base_.roughness_texture, "metallicRoughnessTexture"), "g"))
       surface.medium["specular_roughness"] =
@@ -404,9 +421,10 @@ class MaterialTranslator {
   void tell_extensions(bool is_translucent) {
     constexpr std::array<std::string_view, 3> of_volume{"KHR_materials_transmission", "KHR_materials_volume",
                                                         "KHR_materials_diffuse_transmission"};
-    constexpr std::array<std::string_view, 6> read{
-        kSpecularGlossiness,      "KHR_materials_anisotropy",     "KHR_materials_ior",
-        "KHR_materials_specular", "KHR_materials_volume_scatter", "KHR_materials_scatter"};
+    constexpr std::array<std::string_view, 7> read{kSpecularGlossiness,      "KHR_materials_anisotropy",
+                                                   "KHR_materials_ior",      "KHR_materials_sheen",
+                                                   "KHR_materials_specular", "KHR_materials_volume_scatter",
+                                                   "KHR_materials_scatter"};
     for (const std::string& name : extensions_.keys()) {
       if (std::ranges::find(read, name) != read.end()) continue;
       if (std::ranges::find(of_volume, name) == of_volume.end())

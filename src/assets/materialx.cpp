@@ -27,21 +27,55 @@ constexpr double kMostSpecularAnisotropy = .98, kMostAnisotropy = .99, kLeastIor
 /// Input names of a surface model, and their default values.
 struct SurfaceModel {
   const char *node, *base_weight, *base_color, *weight, *color, *radius, *scale, *anisotropy, *ior,
-      *metalness, *specular_weight, *specular_anisotropy, *normal;
+      *metalness, *specular_weight, *specular_anisotropy, *normal, *fuzz, *fuzz_color, *fuzz_roughness;
   Vec3d default_color, default_scale;
-  double default_roughness;
+  double default_roughness, default_fuzz_roughness;
   bool has_rotation;  ///< input for the rotation of the anisotropy, in turns
 };
 
 // OpenPBR 1.1; Autodesk Standard Surface 1.0.1.
-constexpr std::array<SurfaceModel, 2> models{
-    {{"open_pbr_surface", "base_weight", "base_color", "subsurface_weight", "subsurface_color",
-      "subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy", "specular_ior",
-      "base_metalness", "specular_weight", "specular_roughness_anisotropy", "geometry_normal", Vec3d(.8),
-      Vec3d(1, .5, .25), .3, false},
-     {"standard_surface", "base", "base_color", "subsurface", "subsurface_color", "subsurface_radius",
-      "subsurface_scale", "subsurface_anisotropy", "specular_IOR", "metalness", "specular",
-      "specular_anisotropy", "normal", Vec3d(1), Vec3d(1), .2, true}}};
+constexpr std::array<SurfaceModel, 2> models{{{"open_pbr_surface",
+                                               "base_weight",
+                                               "base_color",
+                                               "subsurface_weight",
+                                               "subsurface_color",
+                                               "subsurface_radius",
+                                               "subsurface_radius_scale",
+                                               "subsurface_scatter_anisotropy",
+                                               "specular_ior",
+                                               "base_metalness",
+                                               "specular_weight",
+                                               "specular_roughness_anisotropy",
+                                               "geometry_normal",
+                                               "fuzz_weight",
+                                               "fuzz_color",
+                                               "fuzz_roughness",
+                                               Vec3d(.8),
+                                               Vec3d(1, .5, .25),
+                                               .3,
+                                               .5,
+                                               false},
+                                              {"standard_surface",
+                                               "base",
+                                               "base_color",
+                                               "subsurface",
+                                               "subsurface_color",
+                                               "subsurface_radius",
+                                               "subsurface_scale",
+                                               "subsurface_anisotropy",
+                                               "specular_IOR",
+                                               "metalness",
+                                               "specular",
+                                               "specular_anisotropy",
+                                               "normal",
+                                               "sheen",
+                                               "sheen_color",
+                                               "sheen_roughness",
+                                               Vec3d(1),
+                                               Vec3d(1),
+                                               .2,
+                                               .3,
+                                               true}}};
 
 const SurfaceModel* find_model(const pugi::xml_node& node) {
   const auto found = std::ranges::find_if(
@@ -79,6 +113,7 @@ class SurfaceReader {
                                               model_.weight, short_triple(base)));
       add_gloss(surface);
     }
+    add_fuzz(weight > 0 ? surface.medium : surface.keys);
     add_bump(surface.keys);
     tell_losses();
     return surface;
@@ -124,6 +159,19 @@ class SurfaceReader {
         "{}: {} {:.3g} -> specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}",
         label_, model_.specular_anisotropy, anisotropy, 1 - ratio, rotation, mean));
     return mean;
+  }
+
+  void add_fuzz(Json& keys) {
+    const double weight = number(model_.fuzz, 0, 0, 1),
+                 roughness = number(model_.fuzz_roughness, model_.default_fuzz_roughness, 0, 1);
+    const Vec3d fibres = color(model_.fuzz_color, Vec3d(1));
+    if (!(weight > 0)) return;
+    keys["fuzz_weight"] = weight;
+    keys["fuzz_color"] = triple_json(fibres);
+    keys["fuzz_roughness"] = roughness;
+    scene_.translated.push_back(
+        fmt::format("{}: {} {:.3g}, {} {} -> fuzz_weight, fuzz_color, fuzz_roughness {:.3g}", label_,
+                    model_.fuzz, weight, model_.fuzz_color, short_triple(fibres), roughness));
   }
 
   void add_gloss(SurfaceTranslation& surface) {

@@ -23,7 +23,7 @@ double projected_area(double cosine, double s) {
 /// coefficient from one to the other, per solid angle. Both point away from the flake.
 /// in    cosines to the normal, and between the directions
 double scattering(double cosine, double other, double between, double s) {
-  const double square = 2 + 2 * between;  // of the sum's length
+  const double square = 2 + 2 * between;  // length of their sum, squared
   if (square < 1e-12) return 0;
   const double z2 = (cosine + other) * (cosine + other) / square;
   const double inverse = (1 - z2) + z2 / (s * s);

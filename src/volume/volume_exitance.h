@@ -32,7 +32,7 @@ struct VolumeInput {
   bool reenter = true;  ///< enables re-entry of light into the body
   /// Factor on incident light by position: mesh, triangle and barycentrics. Empty: none.
   std::function<RgbF(std::uint32_t mesh, std::uint32_t triangle, float u, float v)> entering_tint = {};
-  OuterBoundary boundary = {};    ///< of `media`; with fuzz, less light enters
+  OuterBoundary boundary = {};    ///< boundary of `media`; its fuzz holds light back
   MediaInside media_inside = {};  ///< heterogeneous medium, with `media` about its mean. Empty: homogeneous
 };
 

@@ -158,6 +158,27 @@ TEST(GltfMaterials, AnisotropyHasBothAlphas) {
   expect(body.media.at(0).specular_roughness, body.media[0].grain);
 }
 
+// Claim: sheen is fuzz with the largest channel of its colour as weight, on opaque surfaces and bodies. Source:
+// KHR_materials_sheen. Tolerance: rounding. Fails if: it is reported as not carried, or lost on bodies.
+TEST(GltfMaterials, SheenIsFuzz) {
+  Json material = {
+      {"extensions",
+       {{"KHR_materials_sheen", {{"sheenColorFactor", {.2, .8, .4}}, {"sheenRoughnessFactor", .6}}}}}};
+  const auto expect = [](const Fuzz& fuzz) {
+    EXPECT_NEAR(fuzz.weight, .8, 1e-6);
+    EXPECT_NEAR(fuzz.color.x, .25, 1e-6);
+    EXPECT_NEAR(fuzz.color.y, 1, 1e-6);
+    EXPECT_NEAR(fuzz.roughness, .6, 1e-6);
+  };
+  expect(scene_of(cube_of(material).glb(), "a.glb").shapes.at(0).fuzz);
+  EXPECT_TRUE(imported(cube_of(material)).not_carried.empty());
+  material["extensions"]["KHR_materials_volume"] = kVolume;
+  material["extensions"]["KHR_materials_volume_scatter"] = {{"multiscatterColor", {.5, .5, .5}}};
+  expect(scene_of(cube_of(material).glb(), "a.glb").media.at(0).fuzz);
+  material["extensions"]["KHR_materials_sheen"].erase("sheenColorFactor");
+  EXPECT_EQ(scene_of(cube_of(material).glb(), "a.glb").media.at(0).fuzz, Fuzz());
+}
+
 // Claim: values that leave nothing to scatter, or lie outside of what a medium may have, are replaced and said. Fails if
 // one of them makes a scene file that is refused.
 TEST(GltfMaterials, ValuesOutOfRangeAreSaid) {

@@ -179,6 +179,31 @@ TEST(MaterialX, AnisotropyIsThatOfTheModel) {
   EXPECT_EQ(standard.grain.rotation, 90);
 }
 
+// Claim: the fuzz of OpenPBR and the sheen of Standard Surface are fuzz, of opaque surfaces and media. Source: OpenPBR
+// 1.1; Standard Surface 1.0.1, its default roughness. Fails if: they are reported as lost, or a medium has none.
+TEST(MaterialX, FuzzAndSheenAreFuzz) {
+  const auto scene = [](const std::string& text) {
+    const MaterialFolder folder("<materialx>" + text + "</materialx>");
+    const ImportedAsset import = folder.import("tetrahedron.obj");
+    EXPECT_FALSE(has(import.not_carried, "material 's'"));
+    return parse_scene(import.text, "a.json");
+  };
+  EXPECT_EQ(scene(R"(<open_pbr_surface name="s"><input name="fuzz_weight" value="0.4"/>
+    <input name="fuzz_color" value="0.5, 0.25, 1"/></open_pbr_surface>)")
+                .shapes.at(0)
+                .fuzz,
+            (Fuzz{.4, {.5, .25, 1}, .5}));
+  EXPECT_EQ(scene(R"(<standard_surface name="s"><input name="subsurface" value="1"/>
+    <input name="sheen" value="0.7"/></standard_surface>)")
+                .media.at(0)
+                .fuzz,
+            (Fuzz{.7, {1, 1, 1}, .3}));
+  EXPECT_EQ(scene(R"(<open_pbr_surface name="s"><input name="fuzz_color" value="0.5"/></open_pbr_surface>)")
+                .shapes.at(0)
+                .fuzz,
+            Fuzz());
+}
+
 // Claim: a bump of an image that the surface's normal is connected to, directly or through a graph, is a bump map of its
 // scale in the asset's unit, laid by its tiling from the lower left; other connections are said. Source: MaterialX 1.39, bump.
 // Fails if the scale is in mm, or the prefix of files is dropped.
