@@ -242,7 +242,22 @@ std::vector<KeyInfo> spectrum_rows() {
           "lights: `\"D65\"` (daylight, as the colour 1), `\"A\"` (light bulb), `\"FL2\"` (fluorescent) or "
           "`\"E\"` (equal energy), with the luminance of the colour 1",
           kIlluminantNames),
+      row("spectrum", "tissue", object, "", kFiniteNumber, "",
+          "`sigma_a`: living tissue by its pigments (Donner & Jensen 2006)"),
+      row("spectrum", "powers", list, "", kFiniteNumber, "",
+          "coefficients of media: list of `[factor, exponent]`; the sum of factor times wavelength in nm to "
+          "the "
+          "exponent"),
       row("spectrum", "scale", number, "", kNonNegative, "1", "factor of the values"),
+      row("spectrum.tissue", "melanin", number, "", kUnitInterval, "0",
+          "fraction of the volume that is melanin: the epidermis of light skin 0.01 to 0.06, of dark skin "
+          "0.2 to 0.4"),
+      row("spectrum.tissue", "eumelanin", number, "", kUnitInterval, "0.7",
+          "fraction of the melanin that is brown eumelanin; the rest is red pheomelanin"),
+      row("spectrum.tissue", "blood", number, "", kUnitInterval, "0",
+          "fraction of the volume that is blood: the dermis 0.002 to 0.07"),
+      row("spectrum.tissue", "oxygenation", number, "", kUnitInterval, "0.75",
+          "fraction of the haemoglobin with oxygen"),
   };
 }
 

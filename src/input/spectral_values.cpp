@@ -17,6 +17,7 @@
 #include "input/schema.h"
 #include "opaline/error.h"
 #include "spectra/cie_tables.h"
+#include "spectra/tissue.h"
 #include "spectra/wavelengths.h"
 #include "values/value.h"
 
@@ -26,7 +27,8 @@ namespace {
 /// Power of light, factor of light, or coefficient of a medium.
 enum class Quantity { emission, factor, coefficient };
 
-constexpr std::array<std::string_view, 4> kForms{"nm", "spectrum", "blackbody", "illuminant"};
+constexpr std::array<std::string_view, 6> kForms{"nm",         "spectrum", "blackbody",
+                                                 "illuminant", "tissue",   "powers"};
 
 bool is_spectrum(const Node& node) {
   return node.kind == Node::Kind::object &&
@@ -126,6 +128,40 @@ Spectrum read_table(const ObjectReader& reader, const Range& range) {
   return spectrum;
 }
 
+Spectrum read_tissue(const Value& value) {
+  const ObjectReader reader(value, "spectrum.tissue");
+  Tissue tissue;
+  for (const auto& [key, number] : {std::pair{"melanin", &tissue.melanin},
+                                    {"eumelanin", &tissue.eumelanin},
+                                    {"blood", &tissue.blood},
+                                    {"oxygenation", &tissue.oxygenation}})
+    if (const auto given = reader.find(key)) *number = given->number();
+  if (tissue.melanin + tissue.blood > 1)
+    value.fail("is more than the whole tissue", "'melanin' and 'blood' of at most 1 together");
+  return tissue_absorption(tissue);
+}
+
+/// Sum of a factor times the wavelength in nm to a power.
+Spectrum read_powers(const Value& value, const Range& range) {
+  std::vector<std::array<double, 2>> terms;
+  for (const Value& pair : value.list()) {
+    const std::vector<double> term = numbers_of(pair, kFiniteNumber);
+    if (term.size() != 2) pair.fail("is not a term", "[factor, exponent of the wavelength in nm]");
+    terms.push_back({term[0], term[1]});
+  }
+  if (terms.empty()) value.fail("is empty", "[factor, exponent] or more");
+  Spectrum spectrum = each_nm([&](double nm) {
+    double sum = 0;
+    for (const auto& [factor, exponent] : terms) sum += factor * std::pow(nm, exponent);
+    return sum;
+  });
+  for (const double number : spectrum.values)
+    if (!(number >= range.low && number <= range.high))
+      value.fail(fmt::format("is out of range: {:g} between 360 and 830 nm", number),
+                 fmt::format("sums from {:g} to {:g}", range.low, range.high));
+  return spectrum;
+}
+
 Spectrum read_spectrum(const Value& value, Quantity quantity) {
   const ObjectReader reader(value, "spectrum");
   const std::string_view form = reader.exactly_one_of(kForms);
@@ -135,6 +171,10 @@ Spectrum read_spectrum(const Value& value, Quantity quantity) {
     spectrum = read_table(reader, range);
   } else if (form == "spectrum") {
     spectrum = read_file(reader.need(form), range);
+  } else if (form == "tissue" || form == "powers") {
+    if (quantity != Quantity::coefficient)
+      reader.need(form).fail_key("is a coefficient of a medium", "'nm' and 'values', or 'spectrum'");
+    spectrum = form == "tissue" ? read_tissue(reader.need(form)) : read_powers(reader.need(form), range);
   } else {
     if (quantity != Quantity::emission)
       reader.need(form).fail_key("is the power of a light", "'nm' and 'values', or 'spectrum'");

@@ -7,6 +7,7 @@
 #include "core/scratch_folder.h"
 #include "lights/light.h"
 #include "scene/scene_test.h"
+#include "spectra/tissue.h"
 #include "spectra/wavelengths.h"
 
 namespace opaline {
@@ -47,6 +48,34 @@ TEST(SceneSpectra, Values) {
   EXPECT_NEAR(reflectance.y, .4, 1e-9);
   EXPECT_NEAR(reflectance.z, .2, 1e-9);
   EXPECT_FALSE(parse(R"({"media": {"m": {"preset": "marble"}}})").wavelengths);
+}
+
+// Claim: pigments and sums of powers are coefficients at the wavelengths. Source: scenes/README.md. Tolerance: .1 % of tables each nm. Fails if:
+// the factor `scale` is lost, or a sum below 0 is read.
+TEST(SceneSpectra, TissueAndPowers) {
+  const Scene scene = parse(
+      R"({"media": {"m": {"sigma_a": {"tissue": {"melanin": 0.02, "blood": 0.03, "oxygenation": 0.5}, "scale": 2},
+    "sigma_s_prime": {"powers": [[14.74, -0.22], [2.2e11, -4]]}}}, "film": {"wavelengths": 3}})");
+  const auto& medium = std::get<PhysicalMedium>(scene.media[0].coefficients);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double nm = scene.wavelengths->bands[c][0];
+    const Tissue tissue{.melanin = .02, .blood = .03, .oxygenation = .5};
+    EXPECT_NEAR(medium.sigma_a[c], 2 * tissue_absorption(tissue).at(nm), 1e-9);
+    EXPECT_NEAR(medium.sigma_s_prime[c], 14.74 * std::pow(nm, -.22) + 2.2e11 * std::pow(nm, -4), 1e-3);
+  }
+  const auto refused = [](const std::string& sigma_a, const std::string& words) {
+    const Error error = error_of(R"({"media": {"m": {"sigma_a": )" + sigma_a + R"(, "sigma_s_prime": 1}}})");
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  };
+  refused(R"({"tissue": {"melanin": 0.6, "blood": 0.6}})", "is more than the whole tissue");
+  refused(R"({"tissue": {"blod": 0.6}})", "did you mean 'blood'");
+  refused(R"({"powers": []})", "is empty");
+  refused(R"({"powers": [[1, 2, 3]]})", "is not a term");
+  refused(R"({"powers": [[-1, 0]]})", "is out of range");
+  refused(R"({"powers": [[1, 1000]]})", "is out of range");
+  const Error error = error_of(R"({"shapes": [{"sphere": {}, "reflectance": {"tissue": {}}}]})");
+  EXPECT_NE(std::string(error.what()).find("is a coefficient of a medium"), std::string::npos)
+      << error.what();
 }
 
 // Claim: the fewest wavelengths with colours within 1 %: three for smooth spectra, more for bands of blood and lines of a lamp; those of

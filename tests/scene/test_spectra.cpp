@@ -6,6 +6,7 @@
 
 #include "diffusion/dipole.h"
 #include "spectra/cie_tables.h"
+#include "spectra/tissue.h"
 #include "spectra/wavelengths.h"
 #include "transport/fresnel.h"
 
@@ -127,6 +128,23 @@ TEST(Spectra, SmoothMediumByThree) {
     }
     EXPECT_NEAR(largest, of_channels, .02 * of_channels);
   }
+}
+
+// Claim: tissue by its pigments. Source: the sum of the published formulas and the table's entries at one wavelength, by hand: 550 nm,
+// whole blood with oxygen 2.302585 x 43016 x 150/64500/10. Tolerance: 1e-3 of each. Fails if: a unit of length or the base of the
+// logarithm is wrong, oxygenated blood is the other one, or pigments do not replace tissue.
+TEST(Spectra, Tissue) {
+  const auto at = [](const Tissue& tissue, double nm) { return tissue_absorption(tissue).at(nm); };
+  EXPECT_NEAR(at({}, 550), .0459305, 1e-6);
+  EXPECT_NEAR(at({.blood = 1, .oxygenation = 1}, 550), 23.0343, .02);
+  EXPECT_NEAR(at({.blood = 1, .oxygenation = 0}, 550), 28.6012, .03);
+  EXPECT_NEAR(at({.blood = 1, .oxygenation = 1}, 415) / at({.blood = 1, .oxygenation = 1}, 700),
+              523080. / 290, 2);
+  EXPECT_NEAR(at({.melanin = 1, .eumelanin = 1}, 550), 6.6e10 * std::pow(550, -3.33), 1e-9);
+  EXPECT_NEAR(at({.melanin = 1, .eumelanin = 0}, 550), 2.9e14 * std::pow(550, -4.75), 1e-9);
+  EXPECT_NEAR(at({.melanin = .1, .eumelanin = 1, .blood = .2}, 550),
+              .1 * at({.melanin = 1, .eumelanin = 1}, 550) + .2 * at({.blood = 1}, 550) + .7 * at({}, 550),
+              1e-9);
 }
 
 // Claim: spectra at their extremes. Source: definitions. Tolerance: 1e-12. Fails if: a spectrum of one value is read beyond its end, a mean

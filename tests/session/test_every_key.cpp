@@ -58,6 +58,7 @@ std::vector<Change> changes() {
   const auto texture = [](const std::string& rest) {
     return R"(shapes.floor.reflectance={"texture": "cells.png", )" + rest + "}";
   };
+  const Overrides tissue{R"(media.stone.sigma_a={"tissue": {"melanin": 0.01, "blood": 0.01}})"};
   const Overrides spectrum{R"(media.stone.sigma_a={"nm": [400, 700], "values": [0.1, 0.01]})"};
   const Overrides volume{"settings.method=volume", "settings.bounces=0", "settings.samples=30"},
       cells{"settings.method=volume_diffusion", "settings.bounces=0"};
@@ -273,6 +274,16 @@ std::vector<Change> changes() {
       {"spectrum.illuminant",
        R"(lights.panel.radiance={"illuminant": "A"})",
        {R"(lights.panel.radiance={"illuminant": "E"})"}},
+      {"spectrum.tissue", R"(media.stone.sigma_a={"tissue": {"blood": 0.01}})", spectrum},
+      {"spectrum.tissue.melanin", R"(media.stone.sigma_a={"tissue": {"melanin": 0.02, "blood": 0.01}})",
+       tissue},
+      {"spectrum.tissue.eumelanin",
+       R"(media.stone.sigma_a={"tissue": {"melanin": 0.01, "eumelanin": 0.2, "blood": 0.01}})", tissue},
+      {"spectrum.tissue.blood", R"(media.stone.sigma_a={"tissue": {"melanin": 0.01, "blood": 0.05}})",
+       tissue},
+      {"spectrum.tissue.oxygenation",
+       R"(media.stone.sigma_a={"tissue": {"melanin": 0.01, "blood": 0.01, "oxygenation": 0}})", tissue},
+      {"spectrum.powers", R"(media.stone.sigma_s_prime={"powers": [[7000, -1.2]]})", spectrum},
       {"spectrum.scale",
        R"(lights.panel.radiance={"illuminant": "E", "scale": 3})",
        {R"(lights.panel.radiance={"illuminant": "E"})"}},
