@@ -102,7 +102,7 @@ struct Grain {
 struct Fuzz {
   double weight = 0;      ///< fraction of the surface with fibres, [0, 1]
   Rgb color{1, 1, 1};     ///< albedo of the fibres
-  double roughness = .5;  ///< [0, 1]; 0: all along the normal
+  double roughness = .5;  ///< [0, 1]; below .25, all along the normal, as .25
   friend bool operator==(const Fuzz&, const Fuzz&) = default;
 };
 

@@ -117,6 +117,9 @@ class Session {
   /// error Error{interrupted}: complete stages remain
   void prepare(Monitor* monitor = nullptr);
 
+  /// True: images of scenes with spectra also have a channel for each wavelength, named as "S0.443,15nm".
+  void keep_wavelengths(bool keeps);
+
   /// Renders the scene; prepares it first.
   RenderResult render(Monitor* monitor = nullptr);
 

@@ -20,10 +20,10 @@
 namespace opaline {
 namespace {
 
-constexpr std::array<std::string_view, 13> kLayerWords{
-    "diffuse",    "specular", "albedo",     "N",          "P",   "Z",   "error",
-    "irradiance", "variance", kLightGroups, kCryptomatte, "all", "none"};
-constexpr std::span kLayers = std::span(kLayerWords).first(12);
+constexpr std::array<std::string_view, 14> kLayerWords{
+    "diffuse",    "specular", "albedo",     "N",          "P",          "Z",   "error",
+    "irradiance", "variance", kLightGroups, kCryptomatte, kWavelengths, "all", "none"};
+constexpr std::span kLayers = std::span(kLayerWords).first(13);
 
 constexpr std::uint64_t kMostPixel = 65536;
 

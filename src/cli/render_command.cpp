@@ -286,7 +286,13 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
     if (scene.settings.method != Method::direct || !scene.other_wavelengths.empty())
       return session.render(&stages.monitor());
     shading.direct = shade_direct(arguments, session, stages.monitor());
-    if (scene.wavelengths) convert_to_rgb(shading.direct->picture.image, scene.wavelengths->to_rgb);
+    if (scene.wavelengths) {
+      Image& image = shading.direct->picture.image;
+      WavelengthLayers layers;
+      if (is_named(arguments.layers, kWavelengths)) layers.keep(image, *scene.wavelengths);
+      convert_to_rgb(image, scene.wavelengths->to_rgb);
+      layers.append(image);
+    }
     return std::move(shading.direct->picture);
   });
   const RayScene::Statistics after = session.rays().statistics();
@@ -362,6 +368,7 @@ void render_command(const RenderArguments& arguments) {
   std::optional<StageCache> cache;
   if (!arguments.cache.empty()) cache.emplace(arguments.cache, arguments.cache_bytes);
   Session session(cache ? &*cache : nullptr);
+  session.keep_wavelengths(is_named(arguments.layers, kWavelengths));
   session.expect_edits(!arguments.frames.empty() || is_named(arguments.layers, kLightGroups));
   if (arguments.frames.empty())
     check_writable(arguments);

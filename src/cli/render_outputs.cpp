@@ -67,8 +67,11 @@ void check_layers(const LayerChoice& layers, const Scene& scene) {
   const Method method = scene.settings.method;
   const std::vector<std::string> channels = layer_names(method_of(method).layers());
   if (is_named(layers, kLightGroups)) light_groups(scene);
+  if (is_named(layers, kWavelengths) && !scene.wavelengths)
+    throw Error(ErrorKind::bad_input, {}, 0, 0, "--layers wavelengths: the scene has no spectra",
+                "a spectrum in the scene, or --set film.wavelengths=3");
   for (const std::string& layer : layers.names)
-    if (layer != kLightGroups && layer != kCryptomatte &&
+    if (layer != kLightGroups && layer != kCryptomatte && layer != kWavelengths &&
         std::ranges::none_of(channels, [&](const std::string& channel) {
           return channel.substr(0, channel.find('.')) == layer;
         }))
@@ -79,6 +82,7 @@ void check_layers(const LayerChoice& layers, const Scene& scene) {
 std::size_t asked_layer_bytes(const LayerChoice& layers, const Scene& scene) {
   std::size_t channels = is_named(layers, kCryptomatte) ? 4 * kMatteRanks : 0;
   if (is_named(layers, kLightGroups)) channels += 9 * light_groups(scene).size();
+  if (is_named(layers, kWavelengths)) channels += 6 * (1 + scene.other_wavelengths.size());  // twice
   if (channels == 0) return 0;
   const Rectangle part = rendered_part(scene.film);
   const std::size_t pixels = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);

@@ -60,7 +60,7 @@ bool look_alike(const Scene& scene, const World& world, std::size_t a, std::size
   const Shape &one = scene.shapes[a], &other = scene.shapes[b];
   if (one.medium || other.medium)
     return one.medium == other.medium && one.group == other.group && !one.group.empty();
-  return one.reflectance == other.reflectance && one.gloss == other.gloss &&
+  return one.reflectance == other.reflectance && one.gloss == other.gloss && one.fuzz == other.fuzz &&
          has_one_color(one, world.meshes[a]) && has_one_color(other, world.meshes[b]);
 }
 

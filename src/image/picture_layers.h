@@ -10,8 +10,10 @@
 
 namespace opaline {
 
-/// Names of several layers: each light's contribution, and the layers for selecting objects and materials.
-inline constexpr std::string_view kLightGroups = "light_groups", kCryptomatte = "cryptomatte";
+/// Names of several layers: each light's contribution, the layers for selecting objects and materials, and the
+/// radiance at each wavelength.
+inline constexpr std::string_view kLightGroups = "light_groups", kCryptomatte = "cryptomatte",
+                                  kWavelengths = "wavelengths";
 
 /// Selected layers. The channels of the image itself, R G B A, are in every file; a layer is Z or the
 /// channels "name.*".

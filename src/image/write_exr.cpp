@@ -217,7 +217,8 @@ bool has_channel(const LayerChoice& layers, const std::string& channel) {
   if (layers.all || (channel.size() == 1 && channel != "Z")) return true;
   const std::string layer = channel.substr(0, channel.find('.'));
   return is_named(layers, layer) || (is_matte_channel(channel) && is_named(layers, kCryptomatte)) ||
-         (is_light_group(layer) && is_named(layers, kLightGroups));
+         (is_light_group(layer) && is_named(layers, kLightGroups)) ||
+         (layer == "S0" && is_named(layers, kWavelengths));
 }
 
 WriteReport write_exr(const std::string& path, const Image& image, bool half) {

@@ -174,6 +174,8 @@ Spectrum read_spectrum(const Value& value, Quantity quantity) {
   } else if (form == "tissue" || form == "powers") {
     if (quantity != Quantity::coefficient)
       reader.need(form).fail_key("is a coefficient of a medium", "'nm' and 'values', or 'spectrum'");
+    if (form == "tissue" && value.node().key != "sigma_a")
+      reader.need(form).fail_key("is an absorption", "'sigma_a'");
     spectrum = form == "tissue" ? read_tissue(reader.need(form)) : read_powers(reader.need(form), range);
   } else {
     if (quantity != Quantity::emission)

@@ -228,6 +228,7 @@ bool is_black(const Rgb& color, const std::optional<Texture>& texture) {
 
 /// Why a surface stays black in any light: "the tint of medium wax is 0"; empty: it does not.
 std::string cause_of_black(const Scene& scene, const Shape& shape) {
+  if (has_bright_fuzz(scene, shape)) return {};
   if (shape.medium) {
     const Medium& medium = scene.media[*shape.medium];
     const auto* artist = std::get_if<ArtistMedium>(&medium.coefficients);

@@ -152,9 +152,10 @@ std::vector<RgbF> Shader::bounced_further(const SurfaceHits& hits, const OuterBo
   std::vector<std::uint32_t> chosen;
   std::vector<float> probability;
   for (std::uint32_t i = 0; i < hits.points.size(); ++i) {
-    const RgbF albedo =
-        hits.textures.empty() ? appearances_[hits.hits[i].mesh].albedo : appearance_of(hits, i).albedo;
-    const float likely = std::min(kMostLikely, max_component(albedo));
+    const Appearance& plain = appearances_[hits.hits[i].mesh];
+    const RgbF albedo = hits.textures.empty() ? plain.albedo : appearance_of(hits, i).albedo;
+    const float of_fuzz = max_component(plain.fuzz_color) * (1 - boundary.past_fuzz());
+    const float likely = std::min(kMostLikely, std::max(max_component(albedo), of_fuzz));
     const std::uint64_t key = hash_bits(hits.keys[i], kFurtherSeed);
     if (!(float(unit_double(key)) < likely)) continue;
     points.push_back(hits.points[i]);

@@ -64,7 +64,7 @@ class Shader {
   std::vector<RgbF> radiance_along(std::span<const TracedRay> rays, std::span<const std::uint64_t> keys,
                                    HeldView::Batch* held, std::span<RgbF> further) const;
 
-  /// Hits with exitance depending on the irradiance at the hit itself.
+  /// Hits with light depending on the irradiance at the hit itself: exitance, or light of fuzz.
   struct SeenSurfaces {
     std::size_t field;
     SurfaceHits hits;
@@ -104,7 +104,7 @@ class Shader {
   /// Light from other surfaces at hits; empty: none.
   std::vector<RgbF> bounced_at(const SurfaceHits& hits, const OuterBoundary& boundary, const Pass& pass,
                                HeldView::Surface* held) const;
-  /// The same at hits of gathered rays: by one ray from some of them, chosen in proportion to their albedo.
+  /// The same at hits of gathered rays: by one ray from some of them, chosen in proportion to the albedo of surface or fuzz.
   std::vector<RgbF> bounced_further(const SurfaceHits& hits, const OuterBoundary& boundary,
                                     HeldView::Surface* held) const;
   void write(const SurfaceHits& hits, const LeavingLight& light, std::span<const TracedRay> rays,

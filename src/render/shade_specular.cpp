@@ -162,17 +162,21 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
     // Without an irradiance in the field, it follows from the exitance: outgoing light over that of uniform
     // illumination. Light leaving a face in shadow may come from inside alone.
     const float past_fuzz = appearance.boundary.past_fuzz(cosine);
-    const float leaving = appearance.translucent ? past_fuzz * (1 - appearance.reflectance(cosine)) : 0;
-    if (arriving == RgbF{} && leaving > 0 && may_be_lit(lights_, hits.points[i])) {
+    RgbF leaving(appearance.translucent ? 1 - appearance.reflectance(cosine) : 0);
+    if (appearance.translucent && appearance.boundary.has_fuzz())
+      leaving = appearance.radiance_past_fuzz(cosine) *
+                (std::numbers::pi_v<float> * (1 - appearance.average_reflectance) *
+                 appearance.boundary.past_fuzz());
+    if (arriving == RgbF{} && min_component(leaving) > 0 && may_be_lit(lights_, hits.points[i])) {
       for (std::size_t c = 0; c < 3; ++c)
-        if (appearance.albedo[c] > 0) arriving[c] = sample.diffuse[c] / (leaving * appearance.albedo[c]);
+        if (appearance.albedo[c] > 0) arriving[c] = sample.diffuse[c] / (leaving[c] * appearance.albedo[c]);
       // Dark media may send out light that has crossed them, many times their albedo.
       if (min_component(appearance.albedo) < kDark)
         arriving = component_min(arriving, unshadowed_irradiance(lights_, hits.points[i]) * kInversePi);
     }
     if (appearance.mirrors())
       sample.specular += arriving * appearance.mirrored_share(cosine) * (past_fuzz * past_fuzz);
-    sample.specular += arriving * appearance.fuzz_share(cosine);
+    if (batch.specular == Specular::uniform) sample.specular += arriving * appearance.fuzz_share(cosine);
   }
 }
 

@@ -6,11 +6,16 @@
 namespace opaline {
 namespace {
 
-bool sends_light(const Shape& shape) {
-  return shape.medium.has_value() || shape.reflectance != Rgb{};
+bool sends_light(const Scene& scene, const Shape& shape) {
+  return shape.medium.has_value() || shape.reflectance != Rgb{} || has_bright_fuzz(scene, shape);
 }
 
 }  // namespace
+
+bool has_bright_fuzz(const Scene& scene, const Shape& shape) {
+  const Fuzz& fuzz = shape.medium ? scene.media[*shape.medium].fuzz : shape.fuzz;
+  return fuzz.weight > 0 && fuzz.color != Rgb{};
+}
 
 bool are_one_body(const Shape& a, const Shape& b) {
   return a.medium && b.medium && !a.group.empty() && a.group == b.group;
@@ -18,9 +23,10 @@ bool are_one_body(const Shape& a, const Shape& b) {
 
 bool shapes_exchange_light(const Scene& scene) {
   if (scene.lights.empty()) return false;
-  const auto first = std::ranges::find_if(scene.shapes, sends_light);
+  const auto sends = [&](const Shape& shape) { return sends_light(scene, shape); };
+  const auto first = std::ranges::find_if(scene.shapes, sends);
   return std::any_of(first, scene.shapes.end(), [&](const Shape& other) {
-    return &other != &*first && sends_light(other) && !are_one_body(*first, other);
+    return &other != &*first && sends(other) && !are_one_body(*first, other);
   });
 }
 

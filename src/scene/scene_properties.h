@@ -16,6 +16,9 @@ inline bool is_partly_opaque(const Medium& medium) {
   return medium.subsurface_weight < 1 || medium.weight_texture;
 }
 
+/// True if the fibres of a shape, or of its medium, scatter light.
+bool has_bright_fuzz(const Scene& scene, const Shape& shape);
+
 /// True if textures vary the medium's colour, or colour or radius, inside its bodies, or it has layers. Methods with a radial
 /// profile ignore this (SubsurfaceMethod::follows_textures_inside).
 inline bool has_color_inside(const Medium& medium) {

@@ -36,10 +36,14 @@ void add_values(const Scene& scene, const Add& add) {
   if (!scene.wavelengths) return;
   const auto add_rgb = [&](const Rgb& value) { add(fmt::format("{} {} {}", value.x, value.y, value.z)); };
   for (const Light& light : scene.lights) add_rgb(emission(light));
-  for (const Shape& shape : scene.shapes) add_rgb(shape.reflectance);
+  for (const Shape& shape : scene.shapes) {
+    add_rgb(shape.reflectance);
+    add_rgb(shape.fuzz.color);
+  }
   for (const Medium& medium : scene.media) {
     add_rgb(medium.tint);
     add_rgb(medium.base_color);
+    add_rgb(medium.fuzz.color);
     const auto* const physical = std::get_if<PhysicalMedium>(&medium.coefficients);
     const auto* const artist = std::get_if<ArtistMedium>(&medium.coefficients);
     add_rgb(physical != nullptr ? physical->sigma_a : artist->subsurface_color);

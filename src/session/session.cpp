@@ -26,6 +26,10 @@ void Session::hold_view(bool hold) {
 void Session::match_new_session(bool matches) {
   state_->matches_new_ = matches;
 }
+void Session::keep_wavelengths(bool keeps) {
+  state_->keeps_wavelengths_ = keeps;
+}
+
 void Session::expect_edits(bool edits) {
   state_->edits_ = edits;
 }

@@ -296,14 +296,17 @@ RenderResult Session::State::spectral_image(Monitor* monitor) {
     costs_ = costs;
   };
   RenderResult sum;
+  WavelengthLayers layers;
   try {
     sum = channels_image(monitor);
     costs = costs_;
+    if (keeps_wavelengths_) layers.keep(sum.image, *scene_.wavelengths);
     convert_to_rgb(sum.image, scene_.wavelengths->to_rgb);
     if (reference_.empty()) reference_ = plan_.groups;  // same profiles at all wavelengths
     for (std::size_t g = 0; g < first.other_wavelengths.size(); ++g) {
       edit(at_other_wavelengths(first, g));
       RenderResult result = channels_image(monitor);
+      if (keeps_wavelengths_) layers.keep(result.image, *scene_.wavelengths);
       convert_to_rgb(result.image, scene_.wavelengths->to_rgb);
       add_colors(sum.image, result.image);
       sum.queries += result.queries;
@@ -315,6 +318,7 @@ RenderResult Session::State::spectral_image(Monitor* monitor) {
     throw;
   }
   restore();
+  layers.append(sum.image);
   return sum;
 }
 

@@ -71,7 +71,7 @@ struct Session::State {
   std::vector<Body> bodies_;
   std::vector<BodyKeys> keys_;  // one per body
   std::size_t pictures_ = 1;
-  bool holds_view_ = false;
+  bool holds_view_ = false, keeps_wavelengths_ = false;
   HeldView view_;
   std::shared_ptr<const BouncedPlaces> bounced_;  // cache points of the last image with bounces
   StageKey bounced_key_;

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "session/spectral_image.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <vector>
 
 #include "core/parallel.h"
+#include "image/add_channels.h"
 #include "opaline/error.h"
+#include "spectra/wavelengths.h"
 
 namespace opaline {
 namespace {
@@ -57,6 +62,31 @@ void convert_to_rgb(Image& image, const std::array<Rgb, 3>& to_rgb) {
       for (std::size_t c = 0; c < 3; ++c) color += weighted(to_rgb[c], layer.weight) * double(values[c]);
       for (std::size_t c = 0; c < 3; ++c) values[c] = float(color[c]);
     }
+  });
+}
+
+void WavelengthLayers::keep(const Image& image, const ThreeWavelengths& wavelengths) {
+  const std::size_t red = channel_place(image, "R");
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto [low, high] = wavelengths.bands[c];
+    std::string name = fmt::format("{:.6g}", .5 * (low + high));
+    std::ranges::replace(name, '.', ',');
+    names_.push_back("S0." + name + "nm");
+    std::vector<float>& values = values_.emplace_back(image.pixels.size() / image.channels.size());
+    const auto daylight = float(unit_d65().mean(low, high));
+    for_each_pixel(image, [&](std::size_t pixel) {
+      values[pixel / image.channels.size()] = image.pixels.data()[pixel + red + c] * daylight;
+    });
+  }
+}
+
+void WavelengthLayers::append(Image& image) const {
+  if (names_.empty()) return;
+  const std::size_t first = image.channels.size();
+  add_channels(image, names_);
+  for_each_pixel(image, [&](std::size_t pixel) {
+    for (std::size_t w = 0; w < values_.size(); ++w)
+      image.pixels.data()[pixel + first + w] = values_[w][pixel / image.channels.size()];
   });
 }
 

@@ -9,7 +9,7 @@ namespace opaline {
 /// Fractions of the volume are in [0, 1], with a sum of at most 1.
 struct Tissue {
   double melanin = 0;        ///< fraction of the volume: skin .01 to .4
-  double eumelanin = .7;     ///< fraction of the melanin that is brown; the rest is red (pheomelanin)
+  double eumelanin = .7;     ///< brown fraction of the melanin; the rest is red (pheomelanin)
   double blood = 0;          ///< fraction of the volume: skin .002 to .07
   double oxygenation = .75;  ///< fraction of the haemoglobin with oxygen
 };

@@ -74,10 +74,10 @@ StageKey carried_samples_key(const StageKey& from, const BodyPlan& group, std::s
   return key.key();
 }
 
-/// Adds the boundary of a medium or opaque shape.
-void add_boundary(KeyBuilder& key, double eta, const Fuzz& fuzz) {
-  key.add(eta);
-  if (fuzz.weight > 0) key.add(std::string("fuzz")).add(fuzz.weight).add(fuzz.roughness);
+void add_fuzz(KeyBuilder& key, const Fuzz& fuzz, bool colors) {
+  if (!(fuzz.weight > 0)) return;
+  key.add(std::string("fuzz")).add(fuzz.weight).add(fuzz.roughness);
+  if (colors) key.add(fuzz.color);
 }
 
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
@@ -86,7 +86,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
   KeyBuilder key("transfer", kTransferVersion);
   key.add(embree_version()).add(std::string(widest_instructions()));
   const Medium& medium = input.scene.media[plan.medium];
-  add_boundary(key.add(samples), medium.eta, medium.fuzz);
+  add_fuzz(key.add(samples).add(medium.eta), medium.fuzz);
   key.add(std::uint64_t(light.source.index()));
   key.add_array(std::span<const double>(geometry(light)));
   if (!is_delta(light))
@@ -112,13 +112,12 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
     if (shape.medium) {
       const Medium& medium = input.scene.media[*shape.medium];
       for_each_textured(medium, add_value);
-      add_boundary(key.add(medium.texture_mix), medium.eta, medium.fuzz);
-      if (medium.fuzz.weight > 0) key.add(medium.fuzz.color);
+      add_fuzz(key.add(medium.texture_mix).add(medium.eta), medium.fuzz, true);
       key.add(medium.grain.anisotropy).add(medium.grain.rotation);
     } else if (const auto& gloss = shape.gloss) {
       key.add(gloss->eta).add(gloss->grain.anisotropy).add(gloss->grain.rotation);
     }
-    if (shape.fuzz.weight > 0) add_boundary(key, 0, shape.fuzz), key.add(shape.fuzz.color);
+    add_fuzz(key, shape.fuzz, true);
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
     if (uvs_of(input.scene, shape) != MeshUvs::unread) add_coordinates(key, input.world.meshes[i]);
     if (uses_vertex_colors(input.scene, shape, input.world.meshes[i]))
@@ -175,10 +174,10 @@ StageKey view_coats_key(const Scene& scene) {
   for (const Shape& shape : scene.shapes) {
     for_each_textured(shape, add_part);
     if (shape.gloss) key.add(shape.gloss->grain.anisotropy).add(shape.gloss->grain.rotation);
-    if (shape.fuzz.weight > 0) add_boundary(key, 0, shape.fuzz);
+    add_fuzz(key, shape.fuzz);
     if (!shape.medium) continue;
     const Medium& medium = scene.media[*shape.medium];
-    if (medium.fuzz.weight > 0) add_boundary(key, 0, medium.fuzz);
+    add_fuzz(key, medium.fuzz);
     for_each_textured(medium, add_part);
     key.add(medium.grain.anisotropy).add(medium.grain.rotation);
   }

@@ -46,7 +46,6 @@ StageKey carried_samples_key(const StageKey& from, const BodyPlan& group, std::s
 /// without its colour, the index of refraction, random numbers, and every mesh possibly shadowing the body
 /// from this light. Includes Embree's version and the machine's instruction set, which affect shadow rays.
 /// in    light: recentred
-void add_boundary(KeyBuilder& key, double eta, const Fuzz& fuzz);
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light);
 
@@ -55,6 +54,9 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> transfers,
                          std::span<const Light> lights, const StageKey& tint);
 
+/// Adds fuzz, unless its weight is 0: a scene without fuzz keeps its keys.
+/// in    colors: with the colour; light past the fuzz is independent of it
+void add_fuzz(KeyBuilder& key, const Fuzz& fuzz, bool colors = false);
 /// Adds a medium's coefficients and radial profile.
 void add_profile(KeyBuilder& key, const Medium& medium);
 /// Cache key of the shape of a profile from random walks, in mean free paths.

@@ -81,7 +81,7 @@ class SymmetricTransfer {
   }
 
  private:
-  static constexpr std::size_t kPerSide = 30, kCells = 32, kAzimuths = 48, kParts = 4;
+  static constexpr std::size_t kPerSide = 30, kCells = 128, kAzimuths = 48, kParts = 4;
   static constexpr int kMostOrders = 400;
   static constexpr double kLeastOrder = 1e-6;
 

@@ -42,7 +42,7 @@ class OuterBoundary {
     return fuzz_ == nullptr ? 0 : weight_ * fuzz_->value(view, light, between);
   }
 
-  /// A number for equal boundaries, >= 0: `eta` without fuzz.
+  /// The same, >= 0, for equal boundaries; seldom for others.
   float number() const { return fuzz_ == nullptr ? eta_ : eta_ + 1e3f * (weight_ + fuzz_->reflectance(.5f)); }
 
  private:

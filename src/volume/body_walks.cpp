@@ -52,12 +52,15 @@ class BodyWalks::Walker {
 
   void arrive(const BoundaryPoint& point, const ArrivedLight& light, double weight) {
     const double cosine = std::min(1.0, -dot(point.normal, light.direction));
-    const double reflectance = fresnel_reflectance(cosine, medium_.eta), enters = weight * (1 - reflectance);
+    const double reflectance = fresnel_reflectance(cosine, medium_.eta), past_fuzz = passes_fuzz(cosine),
+                 enters = weight * past_fuzz * (1 - reflectance);
     counts_.entered += enters;
     if (enters > 0)
       pending_.push_back(
           {point.inside(), refracted_inward(light.direction, point.normal, medium_.eta), enters, 0});
-    if (reflectance > 0) send_outside(point, mirrored(light.direction, point.normal), weight * reflectance);
+    if (reflectance > 0)
+      send_outside(point, mirrored(light.direction, point.normal),
+                   weight * past_fuzz * past_fuzz * reflectance);
     while (!pending_.empty()) {
       const WalkState state = pending_.back();
       pending_.pop_back();
@@ -66,6 +69,8 @@ class BodyWalks::Walker {
   }
 
  private:
+  double passes_fuzz(double cosine) const { return double(body_.input_.boundary.past_fuzz(float(cosine))); }
+
   // Continues light that has left or was reflected, and may re-enter. Uses its own random numbers: without
   // re-entry, the walks are unchanged.
   void send_outside(const BoundaryPoint& point, const Vec3d& direction, double weight) {
@@ -82,11 +87,12 @@ class BodyWalks::Walker {
       const std::optional<BoundaryPoint> met = body_.inside_.entry(from, direction);
       if (!met) return;
       const double cosine = std::min(1.0, -dot(met->normal, direction));
-      weight *= double(body_.input_.boundary.past_fuzz(float(cosine)));
+      weight *= passes_fuzz(cosine);
       if (outside_numbers_.next() >= fresnel_reflectance(cosine, medium_.eta)) {
         pending_.push_back({met->inside(), refracted_inward(direction, met->normal, medium_.eta), weight, 0});
         return;
       }
+      weight *= passes_fuzz(cosine);
       direction = mirrored(direction, met->normal);
       from = met->outside();
     }
@@ -174,8 +180,7 @@ class BodyWalks::Walker {
     }
     counts_.flux[body_.cells_.at(Vec3f(point.position), Vec3f(point.normal))] += float(weight);
     const Vec3d outward = refracted_outward(direction, point.normal, medium_.eta);
-    send_outside(point, outward,
-                 weight * double(body_.input_.boundary.past_fuzz(float(dot(outward, point.normal)))));
+    send_outside(point, outward, weight * passes_fuzz(dot(outward, point.normal)));
   }
 
   const BodyWalks& body_;
@@ -227,8 +232,6 @@ WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chu
     if (irradiance > 0 && input_.entering_tint)
       irradiance *= double(input_.entering_tint(at.mesh, at.triangle, at.u, at.v)[job.channel]);
     if (!(irradiance > 0)) continue;
-    if (input_.boundary.has_fuzz())
-      irradiance *= double(input_.boundary.past_fuzz(float(-dot(light.direction, Vec3d(entry.geometric)))));
     Walker(*this, job.channel, exits, counts, WalkNumbers(job.seed + 1 + 2 * job.channel, start),
            WalkNumbers(job.seed + 2 + 2 * job.channel, start), irradiance)
         .arrive(inside_.at(entry), light, irradiance);

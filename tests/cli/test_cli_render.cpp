@@ -189,6 +189,24 @@ float at_brightest(const Image& image, const std::string& channel) {
   return image.pixels.at(brightest + place(channel));
 }
 
+// Claim: --layers wavelengths writes a channel for each wavelength, by `direct` too, and is exit 2 for a scene in red, green and
+// blue. Source: scenes/README.md. Fails if: `direct`, which makes its image itself, has none.
+TEST(CliRender, WavelengthsAreLayers) {
+  const SceneFolder folder;
+  const std::string out = folder.file("a.exr");
+  for (const std::string method : {"lambert", "direct"}) {
+    const Outcome outcome = run_program({"render", folder.scene, "-o", out, "--method", method, "--layers",
+                                         "diffuse,wavelengths", "--set", "film.wavelengths=3", "--quiet"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::vector<std::string> channels = read_image(out).channels;
+    for (const char* name : {"R", "diffuse.G", "S0.443,15nm", "S0.541,924nm", "S0.626,657nm"})
+      EXPECT_NE(std::ranges::find(channels, name), channels.end()) << method << ' ' << name;
+  }
+  const Outcome refused = run_program({"render", folder.scene, "-o", out, "--layers", "wavelengths"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(contains(refused.err, "the scene has no spectra")) << refused.err;
+}
+
 // Claim: --layers all,light_groups,cryptomatte writes the layers of both beside all others, whose values stay; the
 // command in the metadata asks for them again, and a method without light groups is refused before the work. Source:
 // scenes/README.md. Fails if a word is not passed on, or `all` alone costs a picture for each light.

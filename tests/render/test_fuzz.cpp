@@ -157,6 +157,31 @@ TEST(Fuzz, SameChangeByEveryMethod) {
     EXPECT_NEAR(mean_of(method, fuzz) / mean_of(method, "") / walked, 1, .03) << method;
 }
 
+// Claim: fibres on a black ball reflect light from the floor, equally by methods with different paths to it. Source: comparison;
+// without the floor's light. Tolerance: 5 % of the specular light over the picture. Fails if: a black surface with fibres counts as
+// dark, or `direct` gathers no light for fibres.
+TEST(Fuzz, LightFromOtherShapes) {
+  const ScratchFolder folder;
+  const auto specular = [&](const std::string& method, const std::string& more) {
+    const Image image = picture_of(
+        folder,
+        R"({"media": {"m": {"preset": "marble"}}, "shapes": [{"sphere": {"radius": 10}, "reflectance": 0, "fuzz_weight": 1, "fuzz_roughness": 0.8},
+            {"box": {"low": [-60, -14, -60], "high": [60, -10, 60]}, "reflectance": 0.8}],
+            "lights": [{"type": "point", "position": [30, 60, 10], "intensity": 5000}],
+            "camera": {"position": [0, -4, 60], "look_at": [0, -2, 0], "field_of_view": 22}, "film": {"samples_per_pixel": 9, "resolution": [24, 24], "pixel_type": "float"},
+            "settings": {"entry_samples": 64, "method": ")" +
+            method + '"' + more + "}}");
+    double sum = 0;
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x) sum += channel(image, x, y, "specular.G");
+    return sum;
+  };
+  const double all = specular("lambert", ""), direct_only = specular("lambert", R"(, "bounces": 0)");
+  EXPECT_GT(all, 1.3 * direct_only);
+  EXPECT_NEAR(specular("direct", "") / all, 1, .05);
+  EXPECT_NEAR(specular("hierarchical", "") / all, 1, .05);
+}
+
 // Claim: light between surfaces passes fibres on its way, and is reflected by them: a white room with white fibres on
 // all its walls, lit by a lamp, gives no more light than without, and not much less. Source: conservation; the mean
 // differs by the angles of fibres. Tolerance: 15 %. Fails if: bounced light ignores them (over 25 %).

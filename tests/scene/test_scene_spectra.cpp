@@ -73,6 +73,11 @@ TEST(SceneSpectra, TissueAndPowers) {
   refused(R"({"powers": [[1, 2, 3]]})", "is not a term");
   refused(R"({"powers": [[-1, 0]]})", "is out of range");
   refused(R"({"powers": [[1, 1000]]})", "is out of range");
+  EXPECT_NE(
+      std::string(
+          error_of(R"({"media": {"m": {"sigma_a": 1, "sigma_s_prime": {"tissue": {"blood": 0.1}}}}})").what())
+          .find("is an absorption (expected 'sigma_a'"),
+      std::string::npos);
   const Error error = error_of(R"({"shapes": [{"sphere": {}, "reflectance": {"tissue": {}}}]})");
   EXPECT_NE(std::string(error.what()).find("is a coefficient of a medium"), std::string::npos)
       << error.what();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "session/light_groups.h"
+#include "spectra/wavelengths.h"
 #include "support/pictures.h"
 #include "support/scene_picture.h"
 #include "support/scenes.h"
@@ -53,6 +54,41 @@ TEST(SpectralImages, GreyIsRgb) {
                                    {"R", "G", "B", "diffuse.R", "specular.G", "albedo.B", "A", "Z", "N.Y"}),
                 1e-4);
     }
+}
+
+// Claim: on request, an image has the radiance at each wavelength, and it sums to the image. Source: the rule's weights, D65. Tolerance: 1e-5 of the
+// largest. Fails if: a group is kept after its conversion, in another order, or without its daylight.
+TEST(SpectralImages, RadianceAtWavelengths) {
+  const Scene scene =
+      parse_scene(scene_text(R"({"sigma_a": {"nm": [400, 700], "values": [0.4, 0.01]}, "sigma_s_prime": 2})",
+                             "lambert", R"(, "wavelengths": 6)"),
+                  "a.json");
+  Session session;
+  session.keep_wavelengths(true);
+  const Image image = picture_of(session, scene), plain = cold_picture(scene);
+  ASSERT_EQ(image.channels.size(), plain.channels.size() + 6);
+  std::vector<ThreeWavelengths> groups{*scene.wavelengths};
+  for (const Scene& other : scene.other_wavelengths) groups.push_back(*other.wavelengths);
+  double largest = 0;
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) {
+      Rgb sum;
+      std::size_t at = plain.channels.size();
+      for (const ThreeWavelengths& group : groups)
+        for (std::size_t c = 0; c < 3; ++c) {
+          const auto [low, high] = group.bands[c];
+          const std::string& name = image.channels[at++];
+          EXPECT_EQ(name, "S0." + std::to_string(int((low + high) / 2)) + "nm");
+          sum += group.to_rgb[c] * (double(channel(image, x, y, name)) / unit_d65().mean(low, high));
+        }
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::string name(1, "RGB"[c]);
+        EXPECT_EQ(channel(image, x, y, name), channel(plain, x, y, name));
+        largest = std::max(largest, std::abs(sum[c] - double(channel(plain, x, y, name))));
+      }
+    }
+  EXPECT_LT(largest, 1e-4);
+  EXPECT_EQ(cold_picture(scene).channels, plain.channels);
 }
 
 // Claim: a smooth medium's colour by three wavelengths and by thirty. Source: total diffuse reflectance of the dipole under D65, integrated at each nm

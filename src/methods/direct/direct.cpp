@@ -73,7 +73,11 @@ class DirectRenderer {
     result.image = empty_image(part_, scene_.film, layer_names(layers));
     std::atomic<std::size_t> queries{0}, non_finite{0};
     const Pass mirrored = pass_of(state);
-    for_each_tile(Pass{.in_mirrors = &mirrored}, [&](std::size_t pixel, PixelSample sum) {
+    // Fibres also reflect light from other surfaces.
+    const bool has_fuzz = std::ranges::any_of(
+        scene_.shapes, [&](const Shape& shape) { return has_bright_fuzz(scene_, shape); });
+    const Pass first{.gathers = has_fuzz ? mirrored.gathers : nullptr, .in_mirrors = &mirrored};
+    for_each_tile(first, [&](std::size_t pixel, PixelSample sum) {
       if (sum.empty()) return;
       // Variance of the sum, as if each sample had its mean irradiance; images of the irradiance contain the
       // variance.

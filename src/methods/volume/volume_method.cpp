@@ -32,8 +32,7 @@ std::vector<StageKey> walk_keys(const BodyStages& stages, const VolumeInput& wal
   common.add(settings_in_key(KeyedStage::walks, stages.input.scene));
   for (const HomogeneousMedium& medium : walks.media) common.add(medium);
   if (medium_inside != StageKey{}) common.add(medium_inside);
-  const Medium& scene_medium = stages.input.scene.media[stages.body.plan.medium];
-  if (scene_medium.fuzz.weight > 0) add_boundary(common, scene_medium.eta, scene_medium.fuzz);
+  add_fuzz(common, stages.input.scene.media[stages.body.plan.medium].fuzz);
   for (const std::uint32_t m : walks.meshes) common.add(m);
   for (const MeshKeys& mesh : stages.mesh_keys) common.add(mesh.shape);
   const bool alone = walks_by_light(walks);
