@@ -73,8 +73,11 @@ class Builder {
   std::optional<SurfaceCache> build() {
     for (std::size_t v = 0; v < normals_.size(); ++v)
       queries_.push_back({cache_.vertices[v].position, normals_[v]});
-    const std::vector<Exitance> at_vertices = evaluated(vertex_doubts_);
-    for (std::size_t v = 0; v < at_vertices.size(); ++v) cache_.vertices[v].value = at_vertices[v];
+    vertex_doubts_.resize(normals_.size());
+    evaluate_queued([&](std::size_t v, const Exitance& value, const PlaceDoubt& doubt) {
+      cache_.vertices[v].value = value;
+      vertex_doubts_[v] = doubt;
+    });
     set_floor();
     set_slopes();
     leave_sharp_to_points();
@@ -82,13 +85,11 @@ class Builder {
     while (!active.empty()) {
       for (Refined& r : active) set_nodes(r);
       if (cache_.places() > input_.most_places) return {};
-      std::vector<PlaceDoubt> doubts;
-      const std::vector<Exitance> at_nodes = evaluated(doubts);
       node_doubts_.resize(cache_.nodes.size());
-      for (std::size_t i = 0; i < at_nodes.size(); ++i) {
-        cache_.nodes[new_nodes_[i]] = at_nodes[i];
-        node_doubts_[new_nodes_[i]] = doubts[i];
-      }
+      evaluate_queued([&](std::size_t i, const Exitance& value, const PlaceDoubt& doubt) {
+        cache_.nodes[new_nodes_[i]] = value;
+        node_doubts_[new_nodes_[i]] = doubt;
+      });
       new_nodes_.clear();
       std::erase_if(active, [&](Refined& r) { return !wants_more(r); });
     }
@@ -96,25 +97,31 @@ class Builder {
   }
 
  private:
-  // Evaluates the queued queries, with own irradiance zero until it is added. doubts: as in AddOwnLight
-  std::vector<Exitance> evaluated(std::vector<PlaceDoubt>& doubts) {
-    const std::vector<RgbF> dark(queries_.size());
-    std::vector<Exitance> result = evaluate({.octree = input_.octree,
-                                             .kernel = input_.kernel,
-                                             .queries = queries_,
-                                             .irradiance = dark,
-                                             .tolerance = kEvaluationShare * input_.tolerance,
-                                             .instruction_set = input_.instruction_set,
-                                             .cloud = input_.cloud,
-                                             .monitor = input_.monitor});
-    doubts.assign(queries_.size(), {});
-    if (input_.add_own_light) {
-      std::vector<SurfacePoint> points;
-      for (const Query& q : queries_) points.push_back({q.position, q.normal, q.normal});
-      input_.add_own_light(points, result, doubts);
+  // Evaluates the queued queries, with own irradiance zero until it is added, in parts for bounded memory.
+  // use: called with the index of a query, its exitance and its doubt (AddOwnLight)
+  template <class Use>
+  void evaluate_queued(const Use& use) {
+    constexpr std::size_t kAtOnce = 1 << 16;
+    const std::vector<RgbF> dark(std::min(kAtOnce, queries_.size()));
+    for (std::size_t begin = 0; begin < queries_.size(); begin += kAtOnce) {
+      const auto part = std::span(queries_).subspan(begin, std::min(kAtOnce, queries_.size() - begin));
+      std::vector<Exitance> result = evaluate({.octree = input_.octree,
+                                               .kernel = input_.kernel,
+                                               .queries = part,
+                                               .irradiance = std::span(dark).first(part.size()),
+                                               .tolerance = kEvaluationShare * input_.tolerance,
+                                               .instruction_set = input_.instruction_set,
+                                               .cloud = input_.cloud,
+                                               .monitor = input_.monitor});
+      std::vector<PlaceDoubt> doubts(part.size());
+      if (input_.add_own_light) {
+        std::vector<SurfacePoint> points;
+        for (const Query& q : part) points.push_back({q.position, q.normal, q.normal});
+        input_.add_own_light(points, result, doubts);
+      }
+      for (std::size_t i = 0; i < part.size(); ++i) use(begin + i, result[i], doubts[i]);
     }
     queries_.clear();
-    return result;
   }
 
   RgbF whole(const Exitance& e) const {
