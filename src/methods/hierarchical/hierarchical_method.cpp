@@ -69,7 +69,7 @@ CloudError body_cloud_error(const Body& body, const World& world, const Scene& s
 }
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kKernelVersion = 4, kExitanceVersion = 9;
+constexpr std::uint64_t kKernelVersion = 4, kExitanceVersion = 10;
 
 /// Builds the tree of the body's irradiance, or reads it from the cache.
 ResultSource update_tree(BodyStages& stages, const StageKey& key) {
