@@ -34,49 +34,17 @@ struct SurfaceModel {
 };
 
 // OpenPBR 1.1; Autodesk Standard Surface 1.0.1.
-constexpr std::array<SurfaceModel, 2> models{{{"open_pbr_surface",
-                                               "base_weight",
-                                               "base_color",
-                                               "subsurface_weight",
-                                               "subsurface_color",
-                                               "subsurface_radius",
-                                               "subsurface_radius_scale",
-                                               "subsurface_scatter_anisotropy",
-                                               "specular_ior",
-                                               "base_metalness",
-                                               "specular_weight",
-                                               "specular_roughness_anisotropy",
-                                               "geometry_normal",
-                                               "fuzz_weight",
-                                               "fuzz_color",
-                                               "fuzz_roughness",
-                                               Vec3d(.8),
-                                               Vec3d(1, .5, .25),
-                                               .3,
-                                               .5,
-                                               false},
-                                              {"standard_surface",
-                                               "base",
-                                               "base_color",
-                                               "subsurface",
-                                               "subsurface_color",
-                                               "subsurface_radius",
-                                               "subsurface_scale",
-                                               "subsurface_anisotropy",
-                                               "specular_IOR",
-                                               "metalness",
-                                               "specular",
-                                               "specular_anisotropy",
-                                               "normal",
-                                               "sheen",
-                                               "sheen_color",
-                                               "sheen_roughness",
-                                               Vec3d(1),
-                                               Vec3d(1),
-                                               .2,
-                                               .3,
-                                               true}}};
-
+// clang-format off
+constexpr std::array<SurfaceModel, 2> models{
+    {{"open_pbr_surface", "base_weight", "base_color", "subsurface_weight", "subsurface_color",
+      "subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy", "specular_ior",
+      "base_metalness", "specular_weight", "specular_roughness_anisotropy", "geometry_normal",
+      "fuzz_weight", "fuzz_color", "fuzz_roughness", Vec3d(.8), Vec3d(1, .5, .25), .3, .5, false},
+     {"standard_surface", "base", "base_color", "subsurface", "subsurface_color", "subsurface_radius",
+      "subsurface_scale", "subsurface_anisotropy", "specular_IOR", "metalness", "specular",
+      "specular_anisotropy", "normal",
+      "sheen", "sheen_color", "sheen_roughness", Vec3d(1), Vec3d(1), .2, .3, true}}};
+// clang-format on
 const SurfaceModel* find_model(const pugi::xml_node& node) {
   const auto found = std::ranges::find_if(
       models, [&](const SurfaceModel& model) { return node.name() == std::string_view(model.node); });

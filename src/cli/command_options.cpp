@@ -112,8 +112,7 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
                  "layers of the EXR besides R, G, B and A: diffuse (default), specular, albedo, N, P, Z, "
                  "irradiance, error, variance (of direct); all (of these) or none; also light_groups (the "
                  "contribution of each light), cryptomatte (mattes of objects and materials) and wavelengths "
-                 "(radiance "
-                 "at each wavelength of a scene with spectra)")
+                 "(radiance at each wavelength of a scene with spectra)")
       ->check(layers_check())
       ->type_name("NAME,...");
   app.add_option("--samples-ply", render.samples_ply, "also write the surface samples as a PLY point cloud")

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <numbers>
+#include <span>
 #include <vector>
 
 namespace opaline {
@@ -35,11 +36,12 @@ class SymmetricTransfer {
  public:
   explicit SymmetricTransfer(double s) : s_(s) {
     using Rule = boost::math::quadrature::gauss<double, kPerSide>;
-    for (std::size_t i = 0; i < kPerSide / 2; ++i)
-      for (const double sign : {-1., 1.}) {
-        cosines_.push_back(.5 + .5 * sign * Rule::abscissa()[i]);
-        weights_.push_back(.5 * Rule::weights()[i]);
-      }
+    const auto add = [&](std::size_t i, double sign) {
+      cosines_.push_back(.5 + .5 * sign * Rule::abscissa()[i]);
+      weights_.push_back(.5 * Rule::weights()[i]);
+    };
+    for (std::size_t i = kPerSide / 2; i-- > 0;) add(i, -1);
+    for (std::size_t i = 0; i < kPerSide / 2; ++i) add(i, 1);
     for (std::size_t i = 0; i < kPerSide; ++i) {
       cosines_.push_back(-cosines_[i]);
       weights_.push_back(weights_[i]);
@@ -58,7 +60,7 @@ class SymmetricTransfer {
     std::vector<Reflected> result(cosines.size());
     std::vector<std::vector<double>> source(kCells, std::vector<double>(cosines_.size()));
     // The first order's source: light from outside.
-    add_orders(light, source, true);
+    find_light(light, source, true);
     std::vector<std::vector<double>> sum(kCells, std::vector<double>(cosines_.size()));
     for (int order = 1; order <= kMostOrders; ++order) {
       double largest = 0;
@@ -74,7 +76,7 @@ class SymmetricTransfer {
       if (order == 1)
         for (std::size_t k = 0; k < cosines.size(); ++k) result[k].once = leaving(sum, cosines[k]);
       if (largest < kLeastOrder) break;
-      add_orders(light, source, false);
+      find_light(light, source, false);
     }
     for (std::size_t k = 0; k < cosines.size(); ++k) result[k].all = leaving(sum, cosines[k]);
     return result;
@@ -121,7 +123,7 @@ class SymmetricTransfer {
 
   /// Mean light of each cell and direction, by a source constant in each cell; is_outer: by uniform light from
   /// above instead.
-  void add_orders(std::vector<std::vector<double>>& light, const std::vector<std::vector<double>>& source,
+  void find_light(std::vector<std::vector<double>>& light, const std::vector<std::vector<double>>& source,
                   bool is_outer) const {
     for (std::size_t d = 0; d < cosines_.size(); ++d) {
       const double extinction = areas_[d] * kThickness / kCells / std::abs(cosines_[d]);
@@ -140,15 +142,13 @@ class SymmetricTransfer {
   /// Radiance leaving upwards at any cosine, by the sources of the layer, interpolated in the cosine.
   double leaving(const std::vector<std::vector<double>>& source, double cosine) const {
     const double area = projected_area(cosine, s_), extinction = area * kThickness / kCells / cosine;
-    std::vector<std::pair<double, std::size_t>> upward;
-    for (std::size_t i = 0; i < kPerSide; ++i) upward.emplace_back(cosines_[i], i);
-    std::ranges::sort(upward);
-    const auto above = std::ranges::lower_bound(upward, std::pair{cosine, std::size_t{0}});
-    const auto high = std::clamp(above, upward.begin() + 1, upward.end() - 1), low = high - 1;
-    const double t = std::clamp((cosine - low->first) / (high->first - low->first), -1., 2.);
+    const auto upward = std::span(cosines_).first(kPerSide);
+    const auto above = std::size_t(std::ranges::lower_bound(upward, cosine) - upward.begin());
+    const std::size_t high = std::clamp<std::size_t>(above, 1, kPerSide - 1), low = high - 1;
+    const double t = std::clamp((cosine - upward[low]) / (upward[high] - upward[low]), -1., 2.);
     double radiance = 0;
     for (std::size_t cell = kCells; cell-- > 0;) {
-      const double here = source[cell][low->second] * (1 - t) + source[cell][high->second] * t;
+      const double here = source[cell][low] * (1 - t) + source[cell][high] * t;
       const double steady = std::max(0., here) / area;
       radiance = steady + (radiance - steady) * std::exp(-extinction);
     }
@@ -156,7 +156,7 @@ class SymmetricTransfer {
   }
 
   double s_;
-  std::vector<double> cosines_, weights_, areas_, kernel_;  // upward ones first
+  std::vector<double> cosines_, weights_, areas_, kernel_;  // upward ones first, rising
 };
 
 }  // namespace

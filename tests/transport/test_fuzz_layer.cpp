@@ -13,7 +13,7 @@
 namespace opaline {
 namespace {
 
-/// Fraction of light that leaves upwards, of light arriving at a cosine; walks through the same layer.
+/// Reflectance of the layer at a cosine, by random walks, and its standard error.
 std::pair<double, double> walked_reflectance(double cosine, double s, int walks) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform;
