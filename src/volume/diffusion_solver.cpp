@@ -28,8 +28,8 @@ class ConjugateGradients {
     if (from_zero) x_.assign(count_, {});
     residual_ = problem.source;
     choose_scale();
-    for (std::vector<Channels>* values : {&residual_, &x_})
-      for (Channels& value : *values) value.c *= scale_;
+    for (Channels& value : residual_) value.c *= scale_;
+    for (Channels& value : x_) value.c = has_source_ ? value.c * scale_ : Four{};
     inverse_.resize(count_);
     direction_.resize(count_);
     product_.resize(count_);
@@ -102,6 +102,7 @@ class ConjugateGradients {
       std::frexp(largest[c], &exponent);
       scale_[c] = std::ldexp(1.f, -std::clamp(exponent, -120, 120));
     }
+    has_source_ = largest > 0;
   }
 
   // A variable diffusivity is included in the conductances; a constant one is 1 here.
@@ -162,6 +163,7 @@ class ConjugateGradients {
   std::size_t count_;
   Four diffusivity_{};
   Four scale_{};                        // factors of sources and fluences
+  decltype(Four{} > 0) has_source_{};   // per channel; without one, the fluence is 0
   std::vector<Channels> conductances_;  // one per link of the grid, or none
   std::vector<Channels> x_, residual_, inverse_, direction_, product_;
   Sums squared_{}, source_{};  // norms of the residual and of the source

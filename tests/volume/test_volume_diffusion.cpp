@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The diffusion equation inside meshes.
+#include <fmt/format.h>
+
 #include "input/load_scene.h"
 #include "irradiance/irradiance.h"
 #include "session/session_records.h"
@@ -295,6 +297,25 @@ TEST(VolumeDiffusion, Extremes) {
         EXPECT_LT(body.mean_where(solved, everywhere).value, 1.02 * entered_mean(body, light, eta))
             << eta << " " << albedo;
       }
+}
+
+// Claim: bodies down to 1e-9 mean free paths have finite exitance. Source: conservation. Fails if: without collisions, so
+// without sources, the solver continues from the fluence of larger cells.
+TEST(VolumeDiffusion, TinyBodiesAreFinite) {
+  for (const double radius : {4e-5, 4e-8, 4e-9}) {
+    const Scene scene = parse_scene(fmt::format(R"({{
+      "media": {{"clear": {{"sigma_a": 0.01, "sigma_s_prime": 2, "specular_ior": 1.4}}}},
+      "shapes": [{{"name": "ball", "sphere": {{"radius": {0}}}, "medium": "clear"}}],
+      "lights": [{{"name": "lamp", "type": "point", "position": [0, {1}, 0], "intensity": 1}}],
+      "settings": {{"method": "volume_diffusion", "samples": 452}}}})",
+                                                radius, 4 * radius),
+                                    "ball.json", {});
+    Session session;
+    session.edit(scene);
+    session.prepare();
+    for (const RgbF& exitance : cell_exitance(session.bodies()[0]))
+      ASSERT_TRUE(is_finite(exitance)) << radius;
+  }
 }
 
 // Claim: the same bytes for 1 and 3 threads. Source: the header. Tolerance: none. Fails if: sums follow the threads.
