@@ -131,27 +131,44 @@ bool is_too_thin_for_cells(const BodyPlan& group) {
   return group.thickness > 0 && group.thickness < kTooThin * group.smallest_mean_free_path;
 }
 
-// Cell size of volume_diffusion: as set, smaller to resolve the decay of light and thin bodies or if the cells
-// are few, and larger to limit memory.
-void choose_cells(const Scene& scene, const World& world, double fewest, BodyPlan& group,
-                  std::vector<std::string>& warnings) {
+namespace {
+
+/// Cell size of volume_diffusion in lengths of the body: as set, smaller to resolve the decay of light and thin
+/// bodies or if the cells are few.
+double resolving_cell(const Scene& scene, const World& world, double fewest, const BodyPlan& group) {
   constexpr double kAcrossThin = 2, kSmallest = .25;
   constexpr double kOfVarying = .5;    // a cell has one medium, and light blurs detail below a mean free path
   constexpr double kFewestFaces = 60;  // fewest faces of cells, on the surface
   constexpr double kEasyFaces = .4;    // per sample of `fewest`; if there are fewer, cells are smaller
-  const double length = group.smallest_mean_free_path;
   const Medium& medium = scene.media[group.medium];
-  group.cell = scene.settings.cell_size * (varies_inside(medium) && medium.layers.empty()
-                                               ? kOfVarying * short_length_of(scene, world, group)
-                                               : std::min(length, kPerFading * shortest_fading(medium)));
-  const double by_default = group.cell * Settings{}.cell_size / scene.settings.cell_size;
-  group.cell *= std::clamp(std::sqrt(group.area / (kEasyFaces * fewest)) / by_default, .25, 1.);
-  if (group.thickness > 0)
-    group.cell = std::min(group.cell, std::max(group.thickness / kAcrossThin, kSmallest * group.cell));
-  group.cell = std::min(group.cell, std::sqrt(group.area / kFewestFaces));
+  double cell = scene.settings.cell_size *
+                (varies_inside(medium) && medium.layers.empty()
+                     ? kOfVarying * short_length_of(scene, world, group)
+                     : std::min(group.smallest_mean_free_path, kPerFading * shortest_fading(medium)));
+  const double by_default = cell * Settings{}.cell_size / scene.settings.cell_size;
+  cell *= std::clamp(std::sqrt(group.area / (kEasyFaces * fewest)) / by_default, .25, 1.);
+  if (group.thickness > 0) cell = std::min(cell, std::max(group.thickness / kAcrossThin, kSmallest * cell));
+  return std::min(cell, std::sqrt(group.area / kFewestFaces));
+}
+
+/// Smallest cell within the limits of cells and samples.
+double smallest_cell(const Settings& settings, const BodyPlan& group) {
   const double most_faces =
-      std::min(kMostCells / expected_cells(1, 0, 1), double(scene.settings.max_samples) / kCutSamplesPerFace);
-  group.cell = std::max(group.cell, std::sqrt(group.area / most_faces));
+      std::min(kMostCells / expected_cells(1, 0, 1), double(settings.max_samples) / kCutSamplesPerFace);
+  return std::sqrt(group.area / most_faces);
+}
+
+}  // namespace
+
+bool is_too_large_for_layers(const Scene& scene, const World& world, double fewest, const BodyPlan& group) {
+  return !scene.media[group.medium].layers.empty() &&
+         resolving_cell(scene, world, fewest, group) < smallest_cell(scene.settings, group);
+}
+
+void choose_cells(const Scene& scene, const World& world, double fewest, BodyPlan& group,
+                  std::vector<std::string>& warnings) {
+  const double length = group.smallest_mean_free_path;
+  group.cell = std::max(resolving_cell(scene, world, fewest, group), smallest_cell(scene.settings, group));
   if (group.cell > widest_cell(scene.settings) * length)
     warnings.push_back(fmt::format(
         "{}: light leaves within {:.3g} mm, but because of settings.max_samples the cells are {:.3g} mm wide",

@@ -17,6 +17,8 @@ double widest_cell(const Settings& settings);
 /// True if such cells would exceed kMostCells. The surface is then flat on the scale of a mean free path, and
 /// a radial profile is accurate.
 bool is_too_large_for_cells(const Settings& settings, const BodyPlan& group);
+/// True if a body with layers requires smaller cells than the limits permit.
+bool is_too_large_for_layers(const Scene& scene, const World& world, double fewest, const BodyPlan& group);
 /// True if light crosses the body almost without scattering, where the diffusion equation fails.
 bool is_too_thin_for_cells(const BodyPlan& group);
 

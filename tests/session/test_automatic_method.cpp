@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The method `auto`: the choice for each body, and its reasons.
+#include <fmt/format.h>
+
 #include "session_test.h"
 #include "support/pictures.h"
 
@@ -88,6 +90,27 @@ TEST(AutomaticMethod, OpenMeshesKeepTheirTextures) {
     "camera": {"position": [0, 0, 100], "look_at": [0, 0, 0]}, "film": {"resolution": [24, 24]}})";
   EXPECT_TRUE(
       same_pixels(picture_of(folder, text), picture_of(folder, text, {"settings.method=hierarchical"})));
+}
+
+// Claim: a body with layers has cells unless these would be too many; then its equivalent medium is evaluated, to the bit
+// as by hierarchical. Source: automatic_method.h. Fails if: the cells are as many as the limit, and too wide.
+TEST(AutomaticMethod, LayersOfLargeBodiesAreEquivalentMedia) {
+  const auto ball = [](double radius) {
+    return parse_scene(fmt::format(R"({{"media": {{
+        "outer": {{"sigma_a": 1, "sigma_s_prime": 30}}, "inner": {{"sigma_a": 0.1, "sigma_s_prime": 10}},
+        "skin": {{"layers": [{{"medium": "outer", "thickness": 0.1}}, {{"medium": "inner"}}]}}}},
+      "shapes": [{{"sphere": {{"radius": {0}}}, "medium": "skin"}}],
+      "lights": [{{"type": "point", "position": [0, {1}, {1}], "intensity": 900}}],
+      "camera": {{"position": [0, 0, {1}], "look_at": [0, 0, 0]}}, "film": {{"resolution": [16, 16]}},
+      "settings": {{"max_samples": 20000, "samples": 2000}}}})",
+                                   radius, 4 * radius),
+                       "ball.json", {});
+  };
+  EXPECT_EQ(chosen(ball(1)), std::vector{Method::volume_diffusion});
+  const Scene large = ball(10);
+  EXPECT_EQ(chosen(large), std::vector{Method::hierarchical});
+  EXPECT_TRUE(has_reason(large, "cells as small as its layers require"));
+  EXPECT_TRUE(same_pixels(cold_picture(large), cold_picture(with_method(large, Method::hierarchical))));
 }
 
 // Claim: a session keeps cells that suit an edited medium, and its samples and shadow rays with them; it cuts the surface anew

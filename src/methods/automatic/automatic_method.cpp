@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "methods/automatic/automatic_method.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "scene/scene_properties.h"
+#include "subsurface/plan_samples.h"
 
 namespace opaline {
 namespace {
@@ -23,6 +26,9 @@ const char* named_by_scene(const Scene& scene, const BodyPlan& body) {
 void AutomaticMethod::plan(const PlanningInput& input, BodyPlan& body,
                            std::vector<std::string>& warnings) const {
   body.reason_against_method = named_by_scene(input.scene, body);
+  if (is_too_large_for_layers(input.scene, input.world, input.fewest_samples, body))
+    body.reason_against_method =
+        fmt::format("cells as small as its layers require would exceed {:.2g} million", kMostCells / 1e6);
   body.method = body.reason_against_method.empty() ? Method::volume_diffusion : Method::hierarchical;
   method_of(body.method).plan(input, body, warnings);
 }

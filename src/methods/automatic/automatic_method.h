@@ -7,8 +7,8 @@
 namespace opaline {
 
 /// `volume_diffusion`, except for bodies that it does not suit: `hierarchical` evaluates those whose profile
-/// or evaluator the scene sets, open meshes, and bodies of too many mean free paths. The choice depends on
-/// bodies and media alone, not on camera, resolution or clock.
+/// or evaluator the scene sets, open meshes, bodies of too many mean free paths, and bodies whose layers require
+/// more cells than the limit. The choice depends on bodies and media alone, not on camera, resolution or clock.
 class AutomaticMethod : public VolumeDiffusionMethod {
  public:
   void plan(const PlanningInput& input, BodyPlan& body, std::vector<std::string>& warnings) const override;
