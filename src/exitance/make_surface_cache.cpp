@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include "core/random.h"
 #include "exitance/make_patches.h"
@@ -29,31 +30,24 @@ constexpr double kReach = 2, kFinest = 0.25, kBlur = 0.5;
 // edge may be between them.
 constexpr float kJump = 0.02f;
 
-// Position of a node: k of n segments along the edge of two vertices, shared by patches, or inside a patch.
-struct PlaceKey {
+// Position of a node shared by patches: k of n segments along the edge of two vertices, or at one of them (n is 0).
+struct EdgePlace {
   std::uint64_t where = 0;
-  std::uint32_t i = 0, j = 0, n = 0;
-  friend bool operator==(const PlaceKey&, const PlaceKey&) = default;
+  std::uint32_t k = 0, n = 0;
+  friend bool operator==(const EdgePlace&, const EdgePlace&) = default;
 };
-struct PlaceHash {
-  std::size_t operator()(const PlaceKey& k) const {
-    return hash_bits(hash_bits(k.where, k.n), std::uint64_t(k.i) << 32 | k.j);
+struct EdgeHash {
+  std::size_t operator()(const EdgePlace& place) const noexcept {
+    return hash_bits(place.where, std::uint64_t(place.k) << 32 | place.n);
   }
 };
 
-constexpr std::uint32_t kOnEdge = ~0u;
-
-PlaceKey edge_key(std::uint32_t a, std::uint32_t b, std::uint32_t k, std::uint32_t n) {
-  if (k == 0) return {a, 0, kOnEdge, 0};
-  if (k == n) return {b, 0, kOnEdge, 0};
+EdgePlace edge_place(std::uint32_t a, std::uint32_t b, std::uint32_t k, std::uint32_t n) {
+  if (k == 0) return {a, 0, 0};
+  if (k == n) return {b, 0, 0};
   if (a > b) std::swap(a, b), k = n - k;
   const int common = std::countr_zero(k | n);
-  return {std::uint64_t(a) << 32 | b, k >> common, kOnEdge, n >> common};
-}
-
-PlaceKey inner_key(std::uint32_t patch, std::uint32_t i, std::uint32_t j, std::uint32_t n) {
-  const int common = std::countr_zero(i | j | n);
-  return {patch, i >> common, j >> common, n >> common};
+  return {std::uint64_t(a) << 32 | b, k >> common, n >> common};
 }
 
 // A patch not resolved by its vertices alone.
@@ -84,8 +78,8 @@ class Builder {
     std::vector<Refined> active = ill_told_patches();
     while (!active.empty()) {
       for (Refined& r : active) set_nodes(r);
-      if (cache_.places() > input_.most_places) return {};
-      node_doubts_.resize(cache_.nodes.size());
+      if (cache_.vertices.size() + node_count_ > input_.most_places) return {};
+      add_nodes();
       evaluate_queued([&](std::size_t i, const Exitance& value, const PlaceDoubt& doubt) {
         cache_.nodes[new_nodes_[i]] = value;
         node_doubts_[new_nodes_[i]] = doubt;
@@ -220,34 +214,50 @@ class Builder {
     return false;
   }
 
+  // Even nodes are those of the coarser lattice.
   void set_nodes(Refined& r) {
-    r.nodes.clear();
+    const std::vector<std::uint32_t> coarse = std::exchange(r.nodes, {});
+    r.nodes.reserve(lattice_size(r.segments));
     for (std::uint32_t j = 0; j <= r.segments; ++j)
-      for (std::uint32_t i = 0; i + j <= r.segments; ++i) r.nodes.push_back(node(r, i, j));
+      for (std::uint32_t i = 0; i + j <= r.segments; ++i)
+        r.nodes.push_back(!coarse.empty() && i % 2 == 0 && j % 2 == 0
+                              ? coarse[lattice_index(r.segments / 2, i / 2, j / 2)]
+                              : node(r, i, j));
   }
 
-  PlaceKey key_of(const Refined& r, std::uint32_t i, std::uint32_t j) const {
+  std::optional<EdgePlace> on_edge(const Refined& r, std::uint32_t i, std::uint32_t j) const {
     const auto& [a, b, c] = cache_.patches[r.patch].vertices;
-    if (j == 0) return edge_key(a, b, i, r.segments);
-    if (i == 0) return edge_key(a, c, j, r.segments);
-    if (i + j == r.segments) return edge_key(b, c, j, r.segments);
-    return inner_key(r.patch, i, j, r.segments);
+    if (j == 0) return edge_place(a, b, i, r.segments);
+    if (i == 0) return edge_place(a, c, j, r.segments);
+    if (i + j == r.segments) return edge_place(b, c, j, r.segments);
+    return {};
   }
 
   std::uint32_t node(const Refined& r, std::uint32_t i, std::uint32_t j) {
-    const PlaceKey key = key_of(r, i, j);
-    const auto [known, is_new] = places_.try_emplace(key, std::uint32_t(cache_.nodes.size()));
-    if (!is_new) return known->second;
-    cache_.nodes.emplace_back();
-    if (key.n == 0) {
-      cache_.nodes.back() = cache_.vertices[key.where].value;
-      node_doubts_.resize(cache_.nodes.size());
-      node_doubts_.back() = vertex_doubts_[key.where];
-    } else {
-      new_nodes_.push_back(known->second);
-      queries_.push_back(place_of(r, i, j));
+    if (const std::optional<EdgePlace> place = on_edge(r, i, j)) {
+      const auto [known, is_new] = on_edges_.try_emplace(*place, node_count_);
+      if (!is_new) return known->second;
+      if (place->n == 0) {
+        at_vertices_.push_back({node_count_, std::uint32_t(place->where)});
+        return node_count_++;
+      }
     }
-    return known->second;
+    new_nodes_.push_back(node_count_);
+    queries_.push_back(place_of(r, i, j));
+    return node_count_++;
+  }
+
+  // All new nodes at once, in exactly the memory they need.
+  void add_nodes() {
+    cache_.nodes.reserve(node_count_);
+    cache_.nodes.resize(node_count_);
+    node_doubts_.reserve(node_count_);
+    node_doubts_.resize(node_count_);
+    for (const auto& [node, vertex] : at_vertices_) {
+      cache_.nodes[node] = cache_.vertices[vertex].value;
+      node_doubts_[node] = vertex_doubts_[vertex];
+    }
+    at_vertices_.clear();
   }
 
   Query place_of(const Refined& r, std::uint32_t i, std::uint32_t j) const {
@@ -327,7 +337,12 @@ class Builder {
   std::vector<Query> queries_;  // to evaluate: of vertices at first, then of nodes
   std::vector<PlaceDoubt> vertex_doubts_, node_doubts_;
   std::vector<std::uint32_t> new_nodes_;  // their indices
-  std::unordered_map<PlaceKey, std::uint32_t, PlaceHash> places_;
+  std::uint32_t node_count_ = 0;          // with those to be added
+  struct NodeAtVertex {
+    std::uint32_t node, vertex;
+  };
+  std::vector<NodeAtVertex> at_vertices_;
+  std::unordered_map<EdgePlace, std::uint32_t, EdgeHash> on_edges_;
   RgbF floor_{};
 };
 

@@ -20,6 +20,7 @@
 #include "opaline/error.h"
 #include "opaline/scene.h"
 #include "plan/body_groups.h"
+#include "plan/gathered_share.h"
 #include "plan/other_wavelengths.h"
 #include "plan/picture_warnings.h"
 #include "plan/seen_pixels.h"
@@ -76,14 +77,13 @@ void check_bounces(const Scene& scene) {
       "--set settings.bounces=0, or --method volume_diffusion");
 }
 
-/// Memory of the image's points gathering bounced light, more of them in corners, and of rays from samples;
-/// bench_plan. None for methods tracing paths instead.
-std::size_t bytes_of_bounces(const Scene& scene, std::size_t seen, std::size_t samples) {
-  constexpr std::size_t kRaysOfThreads = 8'000'000, kPlaces = 22'000'000, kPixel = 300,
-                        kAtSamples = 16'000'000, kSample = 250;
-  const bool has_places = bounces_of(scene) > 0 && method_of(scene.settings.method).separates_lights();
-  if (!has_places) return 0;
-  return kRaysOfThreads + std::min(kPlaces, kPixel * seen) + std::min(kAtSamples, kSample * samples);
+/// Memory for gathering bounced light: little where few rays meet a surface; bench_plan. None for methods tracing
+/// paths instead.
+std::size_t bytes_of_bounces(const Scene& scene, const World& world, std::size_t samples) {
+  constexpr double kBuffers = 13e6, kAtSamples = 15e6, kSample = 150, kWithoutHits = .3, kOfShare = 15;
+  if (bounces_of(scene) == 0 || !method_of(scene.settings.method).separates_lights()) return 0;
+  return std::size_t((kBuffers + std::min(kAtSamples, kSample * double(samples))) *
+                     std::min(1., kWithoutHits + kOfShare * gathered_share(scene, world)));
 }
 
 /// Text for a medium with textures that could vary inside a body; else empty.
@@ -279,7 +279,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   }
   plan.bytes += picture_bytes(scene, environments);
   const std::size_t without_bodies = plan.bytes;
-  std::size_t samples = 0;
+  std::size_t samples = 0, caches = 0;
   double temporary = 0;  // one body after the other
   const PlanningInput planning{scene, world, lights, fewest_samples(plan.groups.size())};
   for (BodyPlan& group : plan.groups) {
@@ -292,14 +292,17 @@ Plan make_plan(const Scene& scene, const World& world) {
     method_of(group.method).plan(planning, group, plan.warnings);
     const BodyMemory memory = method_of(group.method).memory(planning, group);
     plan.bytes += memory.kept;
+    caches += memory.caches;
     temporary = std::max(temporary, memory.temporary);
     samples += memory.evaluated_samples;
   }
   // Upper bound by pixels and by samples, fitted to bench_plan: the irradiance lattice beside shadow edges,
   // with about as many points as pixels at its finest level, and surface caches, finer at higher resolution.
-  plan.bytes += std::min(60 * seen, 500 * samples);
+  constexpr double kStillHeld = .3;  // fraction of the bounced light's memory while surface caches are made
+  const std::size_t bounces = bytes_of_bounces(scene, world, samples);
+  plan.bytes += std::max(
+      bounces, caches + std::min(60 * seen, 500 * samples) + std::size_t(kStillHeld * double(bounces)));
   if (samples > 0 && scene.film.samples_per_pixel > 1) plan.bytes += 5'000'000;
-  plan.bytes += bytes_of_bounces(scene, seen, samples);
   plan.bytes += std::size_t(temporary);
   if (!scene.other_wavelengths.empty()) plan.bytes = most_bytes(scene, world, plan.bytes, without_bodies);
   plan.rays = cheaper_build(scene, lights, plan);

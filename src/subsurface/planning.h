@@ -29,7 +29,8 @@ struct PlanningInput {
 /// Expected memory of a body, bytes.
 struct BodyMemory {
   std::size_t kept = 0;
-  double temporary = 0;  ///< while the body is prepared
+  std::size_t caches = 0;  ///< surface caches, made after light between shapes is gathered
+  double temporary = 0;    ///< while the body is prepared
   /// Samples evaluated at the hits, with memory proportional to the image.
   std::size_t evaluated_samples = 0;
 };

@@ -59,7 +59,7 @@ BodyMemory HierarchicalMethod::memory(const PlanningInput& input, const BodyPlan
   memory.kept = body.samples * (kBytesOfSample + kBytesOfLight * input.lights.size() +
                                 (bounces_of(input.scene) > 0 ? kBytesOfBounces : 0));
   if (input.scene.settings.evaluator == EvaluatorKind::surface_cache)
-    memory.kept += expected_cache_places(input.scene, body, input.world) * kBytesOfPlace;
+    memory.caches = expected_cache_places(input.scene, body, input.world) * kBytesOfPlace;
   memory.kept += std::size_t(needle_fraction(input.world, body) * double(body.samples) * kBytesOfNeedle);
   return memory;
 }

@@ -180,16 +180,16 @@ std::size_t most_wanted_places(const BodyPlan& group, const World& world) {
 
 std::size_t expected_cache_places(const Scene& scene, const BodyPlan& group, const World& world) {
   // Measured by bench_plan. Beside shadow edges, lattices as fine as the samples; a sphere has none of its own.
-  constexpr double kVertices = 1.05, kInLattices = 5.5, kLeastInLattices = 8e4, kOfSample = 1.6, kOfFew = 8,
-                   kFew = 1e4;
+  constexpr double kVertices = 1.05, kInLattices = 5.5, kLeastInLattices = 3e4, kOfSample = 1.6, kOfFew = 8,
+                   kFew = 1e4, kMany = 1e5;
   const bool is_sphere = std::ranges::all_of(group.meshes, [&](std::uint32_t mesh) {
     return std::holds_alternative<SphereShape>(scene.shapes[mesh].source);
   });
   const auto vertices = double(vertices_of(group, world)), samples = double(group.samples);
-  const double places =
-      is_sphere ? kVertices * vertices + kOfSample * samples + std::max(0., samples - kFew)
-                : std::min(kVertices * vertices + kOfFew * samples,
-                           std::max(kInLattices * vertices, kLeastInLattices) + kOfSample * samples);
+  const double places = is_sphere ? kVertices * vertices + kOfSample * samples + std::max(0., samples - kFew)
+                                  : std::min(kVertices * vertices + kOfFew * samples,
+                                             std::max(kInLattices * vertices, kLeastInLattices) +
+                                                 kOfSample * samples + std::min(samples, kMany));
   return std::min(most_wanted_places(group, world), std::size_t(places));
 }
 

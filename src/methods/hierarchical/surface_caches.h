@@ -14,7 +14,7 @@ namespace opaline {
 /// (bench_plan). Surfaces exceeding it, such as needles cut into squares of the near field's size, are
 /// evaluated at the image's points.
 std::size_t most_wanted_places(const BodyPlan& group, const World& world);
-inline constexpr std::size_t kBytesOfPlace = 190;
+inline constexpr std::size_t kBytesOfPlace = 160;
 /// Expected points of such a cache, at most most_wanted_places.
 std::size_t expected_cache_places(const Scene& scene, const BodyPlan& group, const World& world);
 
