@@ -105,6 +105,7 @@ TEST(MediumExtremes, ZeroMeanFreePath) {
 TEST(MediumExtremes, WideRanges) {
   for (const ProfileKind kind : kAllProfiles)
     for (const double eta : {.3, .75, 1., 3.9, 8.}) {
+      if (kind == ProfileKind::tabulated && eta != 1 && eta != 8) continue;  // walks take long
       for (const double a : {0., 1e-12, 1., 1e12})
         for (const double s : {1e-12, 1., 1e12}) {
           const DiffuseProfile profile = make_diffuse_profile(medium_of(Rgb(a), Rgb(s), eta, kind));

@@ -47,15 +47,15 @@ void expect_within(const EdgeBound& bound, const EdgeLine& line, const std::vect
 // Claim: across the edge of a shadow on a floor, at the default of 10,000 samples, .2 mm or .4 mean free
 // paths apart, `hierarchical` is within the bounds below of `direct`, point by point and by a surface cache:
 // narrower than the mean free path (0 mm) and wider (4.2 mm), both profiles. Source: the same BSSRDF sampled
-// at random, 262k entries a pixel; error over the brightest pixel. Tolerance: 1.5 times the measured mean and
-// max, in which direct's own noise, below .15 % rms, is contained. Fails if: the near field takes no E from
+// at random, 65k entries a pixel; error over the brightest pixel. Tolerance: 1.5 times the measured mean and
+// max, in which direct's own noise, below .3 % rms, is contained. Fails if: the near field takes no E from
 // around the point (NearFieldSampler; mean .30 to .35 %), or samples beside the edge keep their own point's E
 // (narrow: mean .56 %, max 2.7 % before the former was mended).
 TEST_P(ShadowEdge, IsWithinItsBounds) {
   const EdgeBound& bound = GetParam();
   const Scene scene = shadow_edge_scene(bound.wide, bound.profile);
   const EdgeLine line = shadow_edge_line(scene);
-  const auto [direct, noise] = direct_edge_line(scene, line, 262144);
+  const auto [direct, noise] = direct_edge_line(scene, line, 65536);
   const double brightest = std::ranges::max(direct);
   double square = 0;
   for (const double n : noise) square += std::pow(n / brightest, 2) / double(line.x.size());

@@ -10,16 +10,16 @@ namespace {
 
 using namespace test;
 
-constexpr std::size_t kPatches = 8;
+constexpr std::size_t kPatches = 4;
 
 // Lamps that leave one side of the body dark, and take up much of what paths see.
 const QuadLight kAbove{{-40, 6, 40}, {80, 0, 0}, {0, 0, -80}, Rgb(1)},
     kBeside{{6, -40, -40}, {0, 0, 80}, {0, 46, 0}, Rgb(1)};
 
-/// Octants around a point, by the position of a sample.
+/// Quarters around a point, by the position of a sample: bodies and lamps are symmetric in z.
 std::size_t patch_of(const LitBody& body, const Vec3f& position, const Vec3d& middle) {
   const Vec3d p = out_of_world(body.world, Vec3d(position)) - middle;
-  return std::size_t(p.x > 0) + 2 * std::size_t(p.y > 0) + 4 * std::size_t(p.z > 0);
+  return std::size_t(p.x > 0) + 2 * std::size_t(p.y > 0);
 }
 
 /// What a ray sees of flat lamps that do not hide each other.
@@ -91,14 +91,14 @@ void expect_agreement(const std::array<Mean, kPatches>& walked, const std::array
 }
 
 // Claim: what random walks from the lamps count on the cells of a sphere is what a viewer's paths bring back from
-// there, patch by patch (octants), with scattering forward. Source: reciprocity; both are without bias. Tolerance: 4
+// there, patch by patch (quarters), with scattering forward. Source: reciprocity; both are without bias. Tolerance: 4
 // standard errors of both, at most 1 % each. Fails if: light enters unrefracted or without Ft, cells are not those of
 // the samples' areas, lamps are sampled by another weight, or g is left out.
 TEST(CameraPaths, Sphere) {
   LitBody body(SphereShape{{}, 3, 4}, 300, NormalMode::faceted);
   body.medium = {.01, 1, .5, 1.4};
   body.light({kAbove, kBeside});
-  expect_agreement(walked_patches(body, {}, 32), seen_patches(body, {}, 600000));
+  expect_agreement(walked_patches(body, {}, 16), seen_patches(body, {}, 250000));
 }
 
 // Claim: the same of a sphere whose left half is another medium than its right one. Source: as above; the camera's paths know
@@ -116,7 +116,7 @@ TEST(CameraPaths, TwoHalves) {
   const auto media = [&](const Vec3d& p, double) {
     return std::array<HomogeneousMedium, 3>{at(p), at(p), at(p)};
   };
-  expect_agreement(walked_patches(body, {}, 48, media), seen_patches(body, {}, 1200000, {}, left, at));
+  expect_agreement(walked_patches(body, {}, 22, media), seen_patches(body, {}, 500000, {}, left, at));
 }
 
 // Claim: the same of two boxes that overlap in a body with a reentrant edge, with light that leaves and enters again and
@@ -138,7 +138,7 @@ TEST(CameraPaths, TwoOverlappingBoxes) {
       });
     };
     const Vec3d middle{-1, -1, 0};
-    expect_agreement(walked_patches(body, middle, 24), seen_patches(body, middle, 1000000, is_inside));
+    expect_agreement(walked_patches(body, middle, 10), seen_patches(body, middle, 400000, is_inside));
   }
 }
 
