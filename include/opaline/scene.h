@@ -136,6 +136,7 @@ struct MediumLayer {
   PhysicalMedium coefficients;
   double thickness = std::numeric_limits<double>::infinity();  ///< mm, >= 0; infinite in the last layer
   std::optional<Texture> thickness_texture{};                  ///< factor of the thickness
+  double mean_factor = 1;                                      ///< mean of the texture
   friend bool operator==(const MediumLayer&, const MediumLayer&) = default;
 };
 

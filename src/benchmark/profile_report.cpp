@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
+#include "diffusion/layered_medium.h"
 #include "opaline/enumerations.h"
+#include "opaline/error.h"
+#include "transport/fresnel.h"
 
 namespace opaline {
 namespace {
@@ -15,34 +19,50 @@ constexpr double kCollisions = 8e7;
 constexpr double kFewestWalks = 5000, kMostWalks = 1e6;
 constexpr std::size_t kPilotWalks = 2048;
 
-HomogeneousMedium channel_medium(const ProfileRequest& request, std::size_t c) {
-  return {request.coefficients.sigma_a[c], request.coefficients.sigma_s_prime[c] / (1 - request.g), request.g,
-          request.eta};
+std::vector<FlatLayer> flat(std::span<const SlabLayer> layers) {
+  std::vector<FlatLayer> result;
+  for (const auto& [medium, thickness] : layers)
+    result.push_back({medium.sigma_a, medium.sigma_s * (1 - medium.g), thickness});
+  return result;
 }
 
-bool are_alike(const PhysicalMedium& medium) {
-  const auto grey = [](const Rgb& v) { return v.x == v.y && v.x == v.z; };
-  return grey(medium.sigma_a) && grey(medium.sigma_s_prime);
+/// The medium itself, or the equivalent one of several layers.
+HomogeneousMedium medium_of(const ProfileRequest& request, std::span<const SlabLayer> layers) {
+  if (layers.size() == 1) return layers.front().medium;
+  const ReducedMedium equivalent = equivalent_medium(flat(layers), request.eta);
+  const double extinction = equivalent.mean_free_path > 0 ? 1 / equivalent.mean_free_path : 0;
+  return {extinction * equivalent.absorbed, extinction * (1 - equivalent.absorbed) / (1 - request.g),
+          request.g, request.eta};
 }
 
-std::vector<ChannelProfile> models_of(const HomogeneousMedium& medium, double thickness) {
+std::vector<ChannelProfile> models_of(const HomogeneousMedium& medium, std::span<const SlabLayer> layers,
+                                      double thickness) {
   const double length = medium.reduced_mean_free_path();
   std::vector<ChannelProfile> models;
   for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind) {
     const bool is_empty = !std::isfinite(length);
     const ReducedMedium reduced{is_empty ? 0 : length, is_empty ? 1 : medium.sigma_a * length, medium.eta,
                                 thickness};
-    models.push_back(make_channel_profile(ProfileKind(kind), reduced));
+    if (ProfileKind(kind) == ProfileKind::tabulated && layers.size() > 1 && !is_empty)
+      models.emplace_back(make_layered_profile(flat(layers), reduced));
+    else
+      models.push_back(make_channel_profile(ProfileKind(kind), reduced));
   }
   return models;
 }
 
-std::size_t walks_for(const ProfileRequest& request, const HomogeneousMedium& medium, std::size_t runs) {
+SlabWalks walks_in(std::span<const SlabLayer> layers, const SlabEntry& entry,
+                   const LaboratorySettings& settings) {
+  return layers.size() == 1 ? walk_slab(layers.front().medium, {layers.front().thickness}, entry, settings)
+                            : walk_layers(layers, entry, settings);
+}
+
+std::size_t walks_for(const ProfileRequest& request, std::span<const SlabLayer> layers, std::size_t runs) {
   if (request.walks) return *request.walks;
   LaboratorySettings pilot;
   pilot.walks = kPilotWalks;
   pilot.seed = request.seed;
-  const double collisions = walk_slab(medium, {request.thickness}, kDiffuseEntry, pilot).collisions;
+  const double collisions = walks_in(layers, kDiffuseEntry, pilot).collisions;
   return std::size_t(std::clamp(kCollisions / double(runs) / (collisions + 3), kFewestWalks,
                                 kMostWalks));  // 3: entry and exit
 }
@@ -50,24 +70,25 @@ std::size_t walks_for(const ProfileRequest& request, const HomogeneousMedium& me
 }  // namespace
 
 ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor) {
-  constexpr std::array<const char*, 3> names{"R", "G", "B"};
   constexpr std::array<const char*, 6> stages{"walks R, diffuse", "walks R, normal",  "walks G, diffuse",
                                               "walks G, normal",  "walks B, diffuse", "walks B, normal"};
-  const std::size_t count = are_alike(request.coefficients) ? 1 : 3;
   ProfileReport report{request, {}, {}};
+  const std::size_t count = request.channels.size();
+  require(2 * count <= stages.size(), "at most three channels");
   std::uint64_t run = 0;
-  for (std::size_t c = 0; c < count; ++c) {
-    const HomogeneousMedium medium = channel_medium(request, c);
-    ProfiledChannel channel{
-        count == 1 ? "all" : names[c], medium, models_of(medium, request.thickness), {}, {}};
+  for (const auto& [name, layers] : request.channels) {
+    const HomogeneousMedium medium = medium_of(request, layers);
+    ProfiledChannel channel{name, medium, {}, models_of(medium, layers, request.thickness), {}, {}};
+    if (layers.size() > 1)
+      channel.layered_diffusion = layered_exitance(flat(layers), boundary_mismatch(request.eta), 0);
     LaboratorySettings settings;
-    settings.walks = walks_for(request, medium, 2 * count);
+    settings.walks = walks_for(request, layers, 2 * count);
     settings.monitor = &monitor;
     for (const bool is_diffuse : {true, false}) {
       settings.seed = request.seed * 64 + run;  // runs are independent of each other
       monitor.begin(stages[run++], settings.walks);
       (is_diffuse ? channel.diffuse : channel.normal) =
-          walk_slab(medium, {request.thickness}, is_diffuse ? kDiffuseEntry : kNormalEntry, settings);
+          walks_in(layers, is_diffuse ? kDiffuseEntry : kNormalEntry, settings);
     }
     report.channels.push_back(std::move(channel));
   }

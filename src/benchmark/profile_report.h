@@ -16,9 +16,15 @@
 
 namespace opaline {
 
+/// A medium at one wavelength; several layers from the surface inwards, or one.
+struct ChannelLayers {
+  std::string name;
+  std::vector<SlabLayer> layers;
+};
+
 struct ProfileRequest {
   std::string name;  ///< displayed name of the medium
-  PhysicalMedium coefficients;
+  std::vector<ChannelLayers> channels;
   double eta = 1.3;
   double g = 0;                                                ///< mean cosine of the walks at equal sigma_s'
   double thickness = std::numeric_limits<double>::infinity();  ///< mm; infinite: a half space
@@ -29,7 +35,9 @@ struct ProfileRequest {
 /// One channel, or all if they are equal.
 struct ProfiledChannel {
   std::string name;
-  HomogeneousMedium medium;
+  HomogeneousMedium medium;  ///< the equivalent one of layers
+  /// With layers: reflected fraction of a beam along the normal by the diffusion equation in the stack.
+  std::optional<double> layered_diffusion;
   std::vector<ChannelProfile> models;  ///< as kProfileNames has them
   SlabWalks diffuse, normal;           ///< by angle of incidence
 };

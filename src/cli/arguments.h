@@ -78,6 +78,7 @@ struct CompareArguments {
 /// Compares a medium's radial profiles with random walks.
 struct ProfileArguments {
   std::string medium;               ///< preset name, or a JSON object as in a scene's media
+  std::string scene;                ///< file with the medium by its name; empty: none
   std::optional<double> eta, g;     ///< replace the medium's
   std::optional<double> thickness;  ///< mm; none: a half space
   std::optional<std::uint64_t> walks;

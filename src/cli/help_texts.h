@@ -192,8 +192,13 @@ A medium is a preset, sigma_a and sigma_s_prime, or sigma_a, sigma_s and g, in 1
 [r, g, b]. In a half space without absorption, some walks never end. opaline stops each walk after 16 million
 collisions and reports it as unfinished.
 
+--scene FILE reads the medium of this name from a scene. Layers are walked as a stack, at three wavelengths if the scene
+has spectra. "layers, normal" is the diffusion equation in the stack for a beam along the normal; "tabulated" is the
+radial profile of the stack; the other profiles have the equivalent homogeneous medium.
+
 Examples:
   opaline profile skin1 -o skin
+  opaline profile fair --scene scenes/skin-tones.json
   opaline profile marble --thickness 2mm --g 0.8 -o plate
   opaline profile '{"sigma_a": [0.002, 0.004, 0.007], "sigma_s": 22, "g": 0.9, "specular_ior": 1.33}' --walks 1000000
 

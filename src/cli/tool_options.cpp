@@ -91,6 +91,8 @@ void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& opti
                  "a preset such as marble, or the coefficients as in a scene file: '{\"sigma_a\": 0.01, "
                  "\"sigma_s\": 20, \"g\": 0.9, \"specular_ior\": 1.33}'")
       ->required();
+  app.add_option("--scene", profile.scene, "read the medium of this name from a scene file")
+      ->type_name("FILE");
   app.add_option("--thickness", profile.thickness,
                  "thickness of a slab, e.g. 2mm, 500um or 0.5cm (default: a half space)")
       ->transform(millimetres_of())

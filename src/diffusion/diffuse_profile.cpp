@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "diffusion/layered_medium.h"
 #include "scene/scene_properties.h"
 #include "transport/fresnel.h"
 
@@ -26,6 +27,16 @@ ReducedMedium reduce(const ArtistMedium& medium, std::size_t channel, ProfileKin
   const double absorbed = invert_albedo(kind, medium.subsurface_color[channel], eta);
   return {reduced_mean_free_path(medium.subsurface_radius[channel], absorbed, medium.anisotropy), absorbed,
           eta};
+}
+
+TabulatedProfile layered_profile(const Medium& medium, std::size_t channel, const ReducedMedium& equivalent,
+                                 double unit) {
+  std::vector<FlatLayer> layers = flat_layers(medium, channel);
+  for (FlatLayer& layer : layers) {
+    layer.sigma_a *= unit, layer.sigma_s_prime *= unit;
+    layer.thickness /= unit;
+  }
+  return make_layered_profile(layers, equivalent);
 }
 
 template <std::size_t... kKinds>
@@ -145,7 +156,10 @@ DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {
     reduced.mean_free_path /= unit;
     reduced.thickness = profile_thickness(medium) / unit;
     reduced.fit = profile_fit(medium);
-    profile.channels[c] = make_channel_profile(kind, reduced);
+    if (kind == ProfileKind::tabulated && !medium.layers.empty() && reduced.mean_free_path > 0)
+      profile.channels[c] = layered_profile(medium, c, reduced, unit);
+    else
+      profile.channels[c] = make_channel_profile(kind, reduced);
     profile.mean_free_path[c] = reduced.mean_free_path;
     if (reduced.mean_free_path > 0)
       profile.diffuse_mean_free_path[c] = reduced.mean_free_path / std::sqrt(3 * reduced.absorbed);

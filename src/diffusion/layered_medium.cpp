@@ -98,6 +98,14 @@ double layered_exitance(std::span<const FlatLayer> all, double mismatch, double 
   return std::max(0., right[0] / diagonal[0] / (2 * mismatch));
 }
 
+std::vector<FlatLayer> flat_layers(const Medium& medium, std::size_t channel) {
+  std::vector<FlatLayer> layers;
+  for (const MediumLayer& layer : medium.layers)
+    layers.push_back({layer.coefficients.sigma_a[channel], layer.coefficients.sigma_s_prime[channel],
+                      layer.thickness * layer.mean_factor});
+  return layers;
+}
+
 ReducedMedium equivalent_medium(std::span<const FlatLayer> layers, double eta) {
   const double mismatch = boundary_mismatch(eta), total = layered_exitance(layers, mismatch, 0);
   double length = 0;  // mean free path of the first scattering layer

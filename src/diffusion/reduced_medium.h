@@ -20,4 +20,11 @@ struct ReducedMedium {
   NormalizedDiffusionFit fit = NormalizedDiffusionFit::refit;  ///< used by normalized diffusion only
 };
 
+/// One layer, from the surface inwards; isotropic scattering, index-matched to its neighbours.
+struct FlatLayer {
+  double sigma_a = 0, sigma_s_prime = 0;                       ///< 1/length
+  double thickness = std::numeric_limits<double>::infinity();  ///< >= 0; infinite in the last layer only
+  friend bool operator==(const FlatLayer&, const FlatLayer&) = default;
+};
+
 }  // namespace opaline

@@ -9,11 +9,13 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "diffusion/layered_albedo.h"
 #include "transport/fresnel.h"
 #include "transport/half_space.h"
 #include "transport/laboratory.h"
@@ -31,25 +33,40 @@ constexpr double kMostWalks = 400000;
 constexpr double kMostAbsorbed = .97;
 constexpr std::size_t kPilotWalks = 1024;
 
-SlabWalks walk(double absorbed, double eta) {
-  const HomogeneousMedium medium{absorbed, 1 - absorbed, 0, std::clamp(eta, .1, 10.)};
+SlabWalks walk(const WalkedMedium& walked) {
+  const double absorbed = std::min(walked.absorbed, kMostAbsorbed), eta = std::clamp(walked.eta, .1, 10.);
+  std::vector<SlabLayer> layers;
+  for (const FlatLayer& layer : walked.layers)
+    layers.push_back({{layer.sigma_a, layer.sigma_s_prime, 0, eta}, layer.thickness});
   LaboratorySettings settings;
-  settings.seed = 7001;
   settings.most_collisions = kMostCollisions;
   settings.cosine_bins = 1;
-  settings.walks = kPilotWalks;
-  const double each = walk_slab(medium, {}, kDiffuseEntry, settings).collisions + 3;  // 3: entry and exit
-  settings.seed = 7002;
-  settings.walks = std::size_t(std::clamp(kWalkedCollisions / each, 1., kMostWalks));
+  const auto traced = [&](std::uint64_t seed, std::size_t walks) {
+    settings.seed = seed;
+    settings.walks = walks;
+    return layers.empty() ? walk_slab({absorbed, 1 - absorbed, 0, eta}, {}, kDiffuseEntry, settings)
+                          : walk_layers(layers, kDiffuseEntry, settings);
+  };
+  const double each = traced(7001, kPilotWalks).collisions + 3;  // 3: entry and exit
   for (std::size_t i = 0; i < kKnots; ++i) settings.radii.push_back(RadialTable::knot(i));
-  return walk_slab(medium, {}, kDiffuseEntry, settings);
+  return traced(7002, std::size_t(std::clamp(kWalkedCollisions / each, 1., kMostWalks)));
 }
 
-RadialReference reference_of(double absorbed, double eta) {
+/// The slowest decay of the layers, per mean free path.
+double decay_of(const WalkedMedium& medium) {
+  if (medium.layers.empty()) return decay_constant(medium.absorbed);
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const FlatLayer& layer : medium.layers)
+    if (const double extinction = layer.sigma_a + layer.sigma_s_prime; extinction * layer.thickness > 0)
+      slowest = std::min(slowest, extinction * decay_constant(layer.sigma_a / extinction));
+  return std::isfinite(slowest) ? slowest : 0;
+}
+
+RadialReference reference_of(const WalkedMedium& medium) {
   // The width is half the distance between the dipole's source, one mean free path deep, and its image: 1 + 2
   // A / 3.
-  const double inside = std::min(.99, average_reflectance_inside(eta));
-  return {decay_constant(absorbed), 1 + 2. / 3 * (1 + inside) / (1 - inside)};
+  const double inside = std::min(.99, average_reflectance_inside(medium.eta));
+  return {decay_of(medium), 1 + 2. / 3 * (1 + inside) / (1 - inside)};
 }
 
 /// The reference's fraction of each ring: before the first knot, between knots, and beyond the last one.
@@ -144,11 +161,13 @@ class SmoothFit {
   double variance_;  ///< variance of a ring's fraction, over the fraction
 };
 
-RadialTable walked_table(double absorbed, double eta) {
-  const RadialReference reference = reference_of(absorbed, eta);
-  absorbed = std::min(absorbed, kMostAbsorbed);
-  const SlabWalks walked = walk(absorbed, eta);
-  const double total = half_space_albedo(absorbed, eta);
+RadialTable walked_table(const WalkedMedium& medium) {
+  const RadialReference reference = reference_of(medium);
+  const SlabWalks walked = walk(medium);
+  // The exact total of a homogeneous medium reduces noise; layers' rings share the noise of their total.
+  const double total = medium.layers.empty()
+                           ? half_space_albedo(std::min(medium.absorbed, kMostAbsorbed), medium.eta)
+                           : walked.back.total.value;
   std::vector<double> shares;
   double variance = 0, sum = 0;
   for (const WalkedRing& ring : walked.back.rings) {
@@ -164,22 +183,21 @@ RadialTable walked_table(double absorbed, double eta) {
 using SharedShape = std::shared_ptr<const ProfileShape>;
 
 struct KnownShape {
-  double absorbed, eta;
+  WalkedMedium medium;
   SharedShape shape;
 };
 
 /// The most recent shapes of this process.
 class KnownShapes {
  public:
-  SharedShape find(double absorbed, double eta) {
+  SharedShape find(const WalkedMedium& medium) {
     const std::lock_guard lock(mutex_);
-    for (const KnownShape& known : shapes_)
-      if (known.absorbed == absorbed && known.eta == eta) return known.shape;
-    return nullptr;
+    const auto known = std::ranges::find(shapes_, medium, &KnownShape::medium);
+    return known != shapes_.end() ? known->shape : nullptr;
   }
-  void add(double absorbed, double eta, SharedShape shape) {
+  void add(const WalkedMedium& medium, SharedShape shape) {
     const std::lock_guard lock(mutex_);
-    shapes_.push_back({absorbed, eta, std::move(shape)});
+    shapes_.push_back({medium, std::move(shape)});
     if (shapes_.size() > kWalkedShapesKept) shapes_.pop_front();
   }
 
@@ -193,33 +211,44 @@ KnownShapes& known_shapes() {
   return shapes;
 }
 
-SharedShape shape_of(double absorbed, double eta) {
-  if (SharedShape known = known_shapes().find(absorbed, eta)) return known;
+SharedShape shape_of(const WalkedMedium& medium) {
+  if (SharedShape known = known_shapes().find(medium)) return known;
   SharedShape shape;
   // A thread waiting for its walks must not start tasks waiting for this table.
   tbb::this_task_arena::isolate(
-      [&] { shape = std::make_shared<const ProfileShape>(ProfileShape{walked_table(absorbed, eta)}); });
-  known_shapes().add(absorbed, eta, shape);
+      [&] { shape = std::make_shared<const ProfileShape>(ProfileShape{walked_table(medium)}); });
+  known_shapes().add(medium, shape);
   return shape;
+}
+
+TabulatedProfile profile_of(double mean_free_path, double total, const WalkedMedium& medium) {
+  return {{mean_free_path, total, decay_of(medium),
+           std::make_shared<const LazyShape>([=] { return shape_of(medium); })},
+          medium};
 }
 
 }  // namespace
 
-bool has_walked_table(double absorbed, double eta) {
-  return known_shapes().find(absorbed, eta) != nullptr;
+bool has_walked_table(const WalkedMedium& medium) {
+  return known_shapes().find(medium) != nullptr;
 }
 
-void take_walked_table(double absorbed, double eta, RadialTable table) {
-  if (has_walked_table(absorbed, eta)) return;
-  known_shapes().add(absorbed, eta, std::make_shared<const ProfileShape>(ProfileShape{std::move(table)}));
+void take_walked_table(const WalkedMedium& medium, RadialTable table) {
+  if (has_walked_table(medium)) return;
+  known_shapes().add(medium, std::make_shared<const ProfileShape>(ProfileShape{std::move(table)}));
 }
 
 TabulatedProfile make_profile(const ReducedMedium& medium, std::type_identity<TabulatedProfile>) {
-  const double absorbed = medium.absorbed, eta = medium.eta;
-  return {{medium.mean_free_path, half_space_albedo(absorbed, eta), decay_constant(absorbed),
-           std::make_shared<const LazyShape>([=] { return shape_of(absorbed, eta); })},
-          absorbed,
-          eta};
+  return profile_of(medium.mean_free_path, half_space_albedo(medium.absorbed, medium.eta),
+                    {medium.absorbed, medium.eta});
+}
+
+TabulatedProfile make_layered_profile(std::span<const FlatLayer> layers, const ReducedMedium& equivalent) {
+  const double length = equivalent.mean_free_path;
+  WalkedMedium medium{equivalent.absorbed, equivalent.eta};
+  for (const auto& [sigma_a, sigma_s_prime, thickness] : layers)
+    medium.layers.push_back({sigma_a * length, sigma_s_prime * length, thickness / length});
+  return profile_of(length, layered_albedo(medium.layers, medium.eta), medium);
 }
 
 }  // namespace opaline

@@ -19,6 +19,7 @@
 #include "input/edited_text.h"
 #include "input/keyed_values.h"
 #include "input/overrides.h"
+#include "input/photometric_values.h"
 #include "input/readers.h"
 #include "input/spectral_values.h"
 #include "lights/environment_picture.h"
@@ -210,6 +211,11 @@ void share_lengths(std::span<Scene> scenes) {
 
 /// A scene with spectra is read once for each group of wavelengths.
 Scene read_at_wavelengths(const Document& document) {
+  if (has_photometric_values(document)) {
+    Document radiometric = document;
+    resolve_photometric_values(radiometric);
+    return read_at_wavelengths(radiometric);
+  }
   const std::optional<int> count = wavelengths_of(document);
   if (!count) return read_scene(document);
   std::vector<Scene> scenes;

@@ -65,7 +65,9 @@ std::span<const MediumRow> medium_rows() {
       row("medium", "layers", list, "", kFiniteNumber, "",
           "layers of other media below the surface, from the surface inwards; the last one fills the rest. "
           "`volume_diffusion` and `volume` have them by the depth below the nearest surface point; other "
-          "methods use a homogeneous medium of the same reflectance and width of scattering"),
+          "methods use a homogeneous medium of the same reflectance and width of scattering, or random walks "
+          "through "
+          "the stack with `\"profile\": \"tabulated\"`"),
       row("medium.layers", "medium", text, "", kFiniteNumber, "",
           "name of a homogeneous medium; its index of refraction is that of the layered medium"),
       textured(

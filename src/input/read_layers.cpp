@@ -43,14 +43,15 @@ PhysicalMedium coefficients_of(const Medium& medium) {
   return result;
 }
 
+double mean_of(const Texture& texture) {
+  return std::max(0., texture.file->mean()[texture.channel] * texture.scale.x);
+}
+
 void read_thickness(const Value& value, double mm_per_unit, MediumLayer& layer) {
   layer.thickness = 1;
   read_textured(value, layer.thickness, layer.thickness_texture);
   layer.thickness *= mm_per_unit;
-}
-
-double mean_of(const Texture& texture) {
-  return std::max(0., texture.file->mean()[texture.channel] * texture.scale.x);
+  if (layer.thickness_texture) layer.mean_factor = mean_of(*layer.thickness_texture);
 }
 
 }  // namespace
@@ -77,13 +78,7 @@ void read_layers(const Value& value, double mm_per_unit, std::span<const Medium>
   }
   PhysicalMedium equivalent{};
   for (std::size_t c = 0; c < 3; ++c) {
-    std::vector<FlatLayer> stack;
-    for (const MediumLayer& layer : medium.layers) {
-      double thickness = layer.thickness;
-      if (layer.thickness_texture) thickness *= mean_of(*layer.thickness_texture);
-      stack.push_back({layer.coefficients.sigma_a[c], layer.coefficients.sigma_s_prime[c], thickness});
-    }
-    const ReducedMedium reduced = equivalent_medium(stack, medium.eta);
+    const ReducedMedium reduced = equivalent_medium(flat_layers(medium, c), medium.eta);
     if (!(reduced.mean_free_path > 0)) continue;
     equivalent.sigma_a[c] = reduced.absorbed / reduced.mean_free_path;
     equivalent.sigma_s_prime[c] = (1 - reduced.absorbed) / reduced.mean_free_path;

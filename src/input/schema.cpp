@@ -249,6 +249,15 @@ std::vector<KeyInfo> spectrum_rows() {
           "the "
           "exponent"),
       row("spectrum", "scale", number, "", kNonNegative, "1", "factor of the values"),
+      row("spectrum", "lm", number, "lm", kNonNegative, "",
+          "lights of a position: luminous flux, in place of `scale` and of values in W; without a spectrum, "
+          "white"),
+      row("spectrum", "cd", number, "cd", kNonNegative, "", "`intensity`: luminous intensity, likewise"),
+      row("spectrum", "lx", number, "lx", kNonNegative, "", "`irradiance`: illuminance, likewise"),
+      row("spectrum", "nit", number, "cd/m²", kNonNegative, "",
+          "`radiance` and `surroundings`: luminance, likewise"),
+      row("spectrum", "color", color, "", kNonNegative, "white",
+          "colour of the light with `lm`, `cd`, `lx` or `nit`"),
       row("spectrum.tissue", "melanin", number, "", kUnitInterval, "0",
           "fraction of the volume that is melanin: the epidermis of light skin 0.01 to 0.06, of dark skin "
           "0.2 to 0.4"),
@@ -308,7 +317,7 @@ std::span<const std::string_view> section_keys(std::string_view section) {
 }
 
 bool may_be_spectrum(const KeyInfo& info) {
-  return info.type == ValueType::color ||
+  return (info.type == ValueType::color && info.section != "spectrum") ||
          (info.type == ValueType::number_or_triple && info.section == "medium");
 }
 

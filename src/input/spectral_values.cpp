@@ -11,29 +11,15 @@
 #include <string>
 #include <vector>
 
-#include "core/input_file.h"
-#include "core/text_lines.h"
 #include "diffusion/dipole.h"
+#include "input/read_spectrum.h"
 #include "input/schema.h"
-#include "opaline/error.h"
 #include "spectra/cie_tables.h"
-#include "spectra/tissue.h"
 #include "spectra/wavelengths.h"
 #include "values/value.h"
 
 namespace opaline {
 namespace {
-
-/// Power of light, factor of light, or coefficient of a medium.
-enum class Quantity { emission, factor, coefficient };
-
-constexpr std::array<std::string_view, 6> kForms{"nm",         "spectrum", "blackbody",
-                                                 "illuminant", "tissue",   "powers"};
-
-bool is_spectrum(const Node& node) {
-  return node.kind == Node::Kind::object &&
-         std::ranges::any_of(kForms, [&](auto key) { return find_member(node, key) != nullptr; });
-}
 
 bool contains_spectrum(const Node& node) {
   return is_spectrum(node) || std::ranges::any_of(node.children, contains_spectrum);
@@ -75,125 +61,6 @@ void visit_colors(Tree& root, const Visit& visit) {
       visit_members(object, section, part.key + '.' + (is_media ? object.key : std::to_string(i)), visit);
     }
   }
-}
-
-std::vector<double> numbers_of(const Value& list, const Range& range) {
-  std::vector<double> numbers;
-  for (const Value& value : list.list()) numbers.push_back(value.number(range));
-  return numbers;
-}
-
-/// Two columns, nm and value, separated by blanks, commas or semicolons; '#' begins a comment.
-Spectrum read_file(const Value& name, const Range& range) {
-  constexpr std::string_view kSeparators = " \t\r\v\f,;";
-  const std::string path = name.file_path();
-  Spectrum spectrum;
-  const auto read_line = [&](const std::string_view line, std::size_t number) {
-    std::string_view rest = line.substr(0, line.find('#'));
-    std::vector<double> row;
-    for (std::string_view word; !(word = next_word(rest, kSeparators)).empty();) {
-      const std::optional<double> value = number_of(word);
-      if (!value)
-        throw Error(ErrorKind::bad_input, path, int(number), int(word.data() - line.data()) + 1,
-                    "the spectrum has no number here", "nm and a value", printable(word));
-      row.push_back(*value);
-    }
-    if (row.empty()) return;
-    if (row.size() != 2 || !(row[1] >= range.low && row[1] <= range.high) ||
-        (!spectrum.nm.empty() && !(row[0] > spectrum.nm.back())))
-      throw Error(
-          ErrorKind::bad_input, path, int(number), 0, "the spectrum has a wrong line",
-          fmt::format("an increasing wavelength in nm, and a value from {:g} to {:g}", range.low, range.high),
-          printable(line));
-    spectrum.nm.push_back(row[0]);
-    spectrum.values.push_back(row[1]);
-  };
-  try {
-    for_each_line(InputFile(path, "spectrum").read_all(), read_line);
-  } catch (const Error& failure) {
-    throw told_at(name.place(), failure);
-  }
-  if (spectrum.nm.empty()) name.fail("refers to a file without a line", "lines of nm and a value");
-  return spectrum;
-}
-
-Spectrum read_table(const ObjectReader& reader, const Range& range) {
-  const Value nm = reader.need("nm"), values = reader.need("values");
-  Spectrum spectrum{numbers_of(nm, nm.info().range), numbers_of(values, range)};
-  if (spectrum.nm.empty()) nm.fail("is empty", "a wavelength or more");
-  if (spectrum.nm.size() != spectrum.values.size())
-    values.fail("has another length than 'nm'", fmt::format("{} values", spectrum.nm.size()));
-  if (std::ranges::adjacent_find(spectrum.nm, std::greater_equal()) != spectrum.nm.end())
-    nm.fail("is not increasing", "increasing wavelengths");
-  return spectrum;
-}
-
-Spectrum read_tissue(const Value& value) {
-  const ObjectReader reader(value, "spectrum.tissue");
-  Tissue tissue;
-  for (const auto& [key, number] : {std::pair{"melanin", &tissue.melanin},
-                                    {"eumelanin", &tissue.eumelanin},
-                                    {"blood", &tissue.blood},
-                                    {"oxygenation", &tissue.oxygenation}})
-    if (const auto given = reader.find(key)) *number = given->number();
-  if (tissue.melanin + tissue.blood > 1)
-    value.fail("is more than the whole tissue", "'melanin' and 'blood' of at most 1 together");
-  return tissue_absorption(tissue);
-}
-
-/// Sum of a factor times the wavelength in nm to a power.
-Spectrum read_powers(const Value& value, const Range& range) {
-  std::vector<std::array<double, 2>> terms;
-  for (const Value& pair : value.list()) {
-    const std::vector<double> term = numbers_of(pair, kFiniteNumber);
-    if (term.size() != 2) pair.fail("is not a term", "[factor, exponent of the wavelength in nm]");
-    terms.push_back({term[0], term[1]});
-  }
-  if (terms.empty()) value.fail("is empty", "[factor, exponent] or more");
-  Spectrum spectrum = each_nm([&](double nm) {
-    double sum = 0;
-    for (const auto& [factor, exponent] : terms) sum += factor * std::pow(nm, exponent);
-    return sum;
-  });
-  for (const double number : spectrum.values)
-    if (!(number >= range.low && number <= range.high))
-      value.fail(fmt::format("is out of range: {:g} between 360 and 830 nm", number),
-                 fmt::format("sums from {:g} to {:g}", range.low, range.high));
-  return spectrum;
-}
-
-Spectrum read_spectrum(const Value& value, Quantity quantity) {
-  const ObjectReader reader(value, "spectrum");
-  const std::string_view form = reader.exactly_one_of(kForms);
-  const Range& range = value.info().range;
-  Spectrum spectrum;
-  if (form == "nm") {
-    spectrum = read_table(reader, range);
-  } else if (form == "spectrum") {
-    spectrum = read_file(reader.need(form), range);
-  } else if (form == "tissue" || form == "powers") {
-    if (quantity != Quantity::coefficient)
-      reader.need(form).fail_key("is a coefficient of a medium", "'nm' and 'values', or 'spectrum'");
-    if (form == "tissue" && value.node().key != "sigma_a")
-      reader.need(form).fail_key("is an absorption", "'sigma_a'");
-    spectrum = form == "tissue" ? read_tissue(reader.need(form)) : read_powers(reader.need(form), range);
-  } else {
-    if (quantity != Quantity::emission)
-      reader.need(form).fail_key("is the power of a light", "'nm' and 'values', or 'spectrum'");
-    spectrum = form == "blackbody" ? black_body(reader.need(form).number())
-                                   : illuminant(kIlluminantNames[reader.need(form).choice()]);
-    spectrum = with_unit_luminance(std::move(spectrum));
-  }
-  if (form != "nm")
-    if (const auto values = reader.find("values"))
-      values->fail_key(fmt::format("cannot be combined with '{}'", form), "'nm' with it");
-  if (const auto scale = reader.find("scale"))
-    for (double& number : spectrum.values) number *= scale->number();
-  if (quantity == Quantity::factor)
-    for (const double number : spectrum.values)
-      if (number > range.high)
-        value.fail("is out of range with its scale", fmt::format("at most {:g}", range.high));
-  return spectrum;
 }
 
 /// True for values read as they are: textures, and a value of another type, for the reader's message.

@@ -101,11 +101,13 @@ std::string medium_stage(const Medium& medium, Method method) {
 }
 
 std::string layers_stage(const Medium& medium, Method method) {
-  return fmt::format("{} layers{}", medium.layers.size(),
-                     method_of(method).follows_textures_inside(true)
-                         ? " by the depth below the nearest surface point"
-                         : ": a homogeneous medium of the same reflectance and width of scattering; --method "
-                           "volume_diffusion has the layers");
+  const char* const how =
+      method_of(method).follows_textures_inside(true) ? " by the depth below the nearest surface point"
+      : medium.profile == ProfileKind::tabulated      ? ": random walks through the stack"
+                                                 : ": a homogeneous medium of the same reflectance and width "
+                                                   "of scattering; \"profile\": \"tabulated\", or --method "
+                                                   "volume_diffusion, has the layers";
+  return fmt::format("{} layers{}", medium.layers.size(), how);
 }
 
 void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) {

@@ -205,10 +205,17 @@ void add_profile(KeyBuilder& key, const Medium& medium) {
   key.add(std::uint64_t(medium.coefficients.index())).add(medium.eta).add(profile_kind(medium));
   if (profile_kind(medium) == ProfileKind::multipole) key.add(profile_thickness(medium));
   if (profile_kind(medium) == ProfileKind::normalized_diffusion) key.add(profile_fit(medium));
+  if (profile_kind(medium) != ProfileKind::tabulated) return;
+  for (const MediumLayer& layer : medium.layers)
+    key.add(layer.coefficients).add(layer.thickness).add(layer.mean_factor);
 }
 
-StageKey walked_profile_key(double absorbed, double eta) {
-  return KeyBuilder("walked profile", kWalkedProfileVersion).add(absorbed).add(eta).key();
+StageKey walked_profile_key(const WalkedMedium& medium) {
+  KeyBuilder key("walked profile", kWalkedProfileVersion);
+  key.add(medium.absorbed).add(medium.eta);
+  for (const FlatLayer& layer : medium.layers)
+    key.add(layer.sigma_a).add(layer.sigma_s_prime).add(layer.thickness);
+  return key.key();
 }
 
 }  // namespace opaline

@@ -60,7 +60,7 @@ void add_fuzz(KeyBuilder& key, const Fuzz& fuzz, bool colors = false);
 /// Adds a medium's coefficients and radial profile.
 void add_profile(KeyBuilder& key, const Medium& medium);
 /// Cache key of the shape of a profile from random walks, in mean free paths.
-StageKey walked_profile_key(double absorbed, double eta);
+StageKey walked_profile_key(const WalkedMedium& medium);
 
 /// Cache key of all light from surfaces, except the exitance of bodies: meshes, opaque surfaces, lights.
 /// in    lights: recentred

@@ -2,11 +2,13 @@
 #include "transport/laboratory.h"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/parallel.h"
 #include "transport/fresnel.h"
 #include "transport/laboratory_checks.h"
+#include "transport/layer_stack.h"
 #include "transport/random_walk.h"
 #include "transport/slab_tally.h"
 
@@ -46,14 +48,13 @@ Vec3d direction_inside(double cosine, double eta) {
 }
 
 struct Experiment {
-  HomogeneousMedium medium;
-  SlabBody body;
+  double eta;
   SlabEntry entry;
   double entered;  ///< fraction of the incident flux
   std::uint64_t seed, most_collisions;
   std::size_t walks_each;
   TallyBins bins;
-  SlabControls controls;
+  std::optional<SlabControls> controls;  ///< homogeneous slab only
 };
 
 /// Records one walk.
@@ -63,7 +64,7 @@ struct SlabWatcher {
   double returned = 0;
 
   void visit(const WalkState& walk, const BoundaryAhead&, const Crossing& crossing) {
-    experiment.controls.visit(walk, crossing, tally.controls);
+    if (experiment.controls) experiment.controls->visit(walk, crossing, tally.controls);
   }
   void leave(const WalkExit& light) {
     const bool is_back = light.normal.z > 0;
@@ -74,24 +75,29 @@ struct SlabWatcher {
     if (light.collisions == 0) face.uncollided += light.weight;
     const double x = light.position.x, y = light.position.y;
     face.rings[bins.ring_of(x * x + y * y)] += light.weight;
-    const double cosine = refracted_cosine(std::abs(light.direction.z), experiment.medium.eta);
+    const double cosine = refracted_cosine(std::abs(light.direction.z), experiment.eta);
     face.cosines[bins.cosine_of(cosine)] += light.weight;
   }
 };
 
 /// Within a batch, the cosines of incidence are stratified.
-void walk_once(const Experiment& experiment, std::size_t batch, std::size_t i, SlabTally& tally) {
-  const double eta = experiment.medium.eta;
+/// follow: WalkEnd(WalkNumbers&, WalkState&, SlabWatcher&)
+template <class Follow>
+void walk_once(const Experiment& experiment, const Follow& follow, std::size_t batch, std::size_t i,
+               SlabTally& tally) {
+  const double eta = experiment.eta;
   WalkNumbers numbers(experiment.seed, batch * experiment.walks_each + i);
   const double u = (double(i) + numbers.next()) / double(experiment.walks_each);
   const EnteredLight light = enter(experiment.entry, eta, experiment.entered, u);
   WalkState walk{{}, direction_inside(light.cosine, eta), light.weight};
-  experiment.controls.start(walk, tally.controls);
+  if (experiment.controls)
+    experiment.controls->start(walk, tally.controls);
+  else
+    tally.controls.back() += walk.weight - 1;  // its mean is known to be 0
   if (!(walk.weight > 0)) return;
   SlabWatcher watcher{experiment, tally};
-  const WalkEnd end =
-      random_walk(experiment.medium, experiment.body, experiment.most_collisions, numbers, walk, watcher);
-  if (end.unfinished > 0) experiment.controls.give_up(walk, tally.controls);
+  const WalkEnd end = follow(numbers, walk, watcher);
+  if (end.unfinished > 0 && experiment.controls) experiment.controls->give_up(walk, tally.controls);
   tally.absorbed += end.absorbed;
   tally.unfinished += end.unfinished;
   tally.collisions += double(walk.collisions);
@@ -138,34 +144,73 @@ std::vector<double> default_radii(const HomogeneousMedium& medium) {
   return radii;
 }
 
-SlabWalks walk_slab(const HomogeneousMedium& medium, const Slab& slab, const SlabEntry& entry,
-                    const LaboratorySettings& settings) {
-  check_slab(medium, slab, entry);
-  check_settings(settings);
-  const std::size_t walks_each = walks_of_a_batch(settings);
-  const std::vector<double>& radii = settings.radii;
-  const Experiment experiment{medium,
-                              {slab.thickness},
-                              entry,
-                              entered_share(medium, entry),
-                              settings.seed,
-                              settings.most_collisions,
-                              walks_each,
-                              make_bins(radii.empty() ? default_radii(medium) : radii,
-                                        std::size_t(settings.cosine_bins), entry.is_diffuse),
-                              SlabControls(medium, slab.thickness)};
+namespace {
+
+template <class Follow>
+SlabWalks run(const Experiment& experiment, const Follow& follow, Monitor* monitor) {
   std::vector<SlabTally> batches(kWalkBatches);
+  const std::size_t walks_each = experiment.walks_each;
   parallel_chunks(kWalkBatches, 1, [&](std::size_t begin, std::size_t, std::size_t batch) {
     SlabTally tally = empty_tally(experiment.bins);
     for (std::size_t i = 0; i < walks_each; ++i) {
-      walk_once(experiment, batch, i, tally);
-      if (i % 64 == 0) advance(settings.monitor, std::min<std::size_t>(64, walks_each - i));
+      walk_once(experiment, follow, batch, i, tally);
+      if (i % 64 == 0) advance(monitor, std::min<std::size_t>(64, walks_each - i));
     }
     batches[begin] = std::move(tally);
   });
   SlabWalks result = summarize(experiment.bins, batches, walks_each);
   result.entered = experiment.entered;
   return result;
+}
+
+Experiment experiment_of(const HomogeneousMedium& surface, const SlabEntry& entry,
+                         const LaboratorySettings& settings) {
+  check_settings(settings);
+  const std::vector<double>& radii = settings.radii;
+  return {surface.eta,
+          entry,
+          entered_share(surface, entry),
+          settings.seed,
+          settings.most_collisions,
+          walks_of_a_batch(settings),
+          make_bins(radii.empty() ? default_radii(surface) : radii, std::size_t(settings.cosine_bins),
+                    entry.is_diffuse),
+          {}};
+}
+
+}  // namespace
+
+SlabWalks walk_slab(const HomogeneousMedium& medium, const Slab& slab, const SlabEntry& entry,
+                    const LaboratorySettings& settings) {
+  check_slab(medium, slab, entry);
+  Experiment experiment = experiment_of(medium, entry, settings);
+  experiment.controls.emplace(medium, slab.thickness);
+  const SlabBody body{slab.thickness};
+  const auto follow = [&](WalkNumbers& numbers, WalkState& walk, SlabWatcher& watcher) {
+    return random_walk(medium, body, experiment.most_collisions, numbers, walk, watcher);
+  };
+  return run(experiment, follow, settings.monitor);
+}
+
+SlabWalks walk_layers(std::span<const SlabLayer> layers, const SlabEntry& entry,
+                      const LaboratorySettings& settings) {
+  check_value(!layers.empty(), "layers", "at least one", 0);
+  const HomogeneousMedium& surface = layers.front().medium;
+  std::vector<SlabLayer> kept;
+  for (const SlabLayer& layer : layers) {
+    const bool is_last = &layer == &layers.back();
+    check_value(layer.thickness >= 0 && (is_last || std::isfinite(layer.thickness)), "thickness",
+                "a number of at least 0, infinite in the last layer only", layer.thickness);
+    check_medium(layer.medium);
+    if (layer.thickness > 0 || is_last) kept.push_back(layer);
+  }
+  check_slab(surface, {std::max(kept.back().thickness, kept.front().thickness)}, entry);
+  const Experiment experiment = experiment_of(surface, entry, settings);
+  const LayerStack stack(kept);
+  const auto follow = [&](WalkNumbers& numbers, WalkState& walk, SlabWatcher& watcher) {
+    return layered_walk(stack, surface.eta, experiment.most_collisions, numbers, walk, watcher);
+  };
+  return run(experiment, follow, settings.monitor);
 }
 
 }  // namespace opaline

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "opaline/monitor.h"
@@ -19,6 +20,12 @@ namespace opaline {
 /// Medium between two smooth parallel faces, infinite sideways.
 struct Slab {
   double thickness = std::numeric_limits<double>::infinity();  ///< mm, > 0; infinite: a half space
+};
+
+/// Medium of a layer, and its thickness.
+struct SlabLayer {
+  HomogeneousMedium medium;
+  double thickness = std::numeric_limits<double>::infinity();  ///< mm, >= 0
 };
 
 /// Incident light.
@@ -92,5 +99,13 @@ std::vector<double> default_radii(const HomogeneousMedium& medium);
 ///       exiting light; tested against van de Hulst 1980 and Chandrasekhar's H functions (tests/volume)
 SlabWalks walk_slab(const HomogeneousMedium& medium, const Slab& slab, const SlabEntry& entry,
                     const LaboratorySettings& settings);
+
+/// Random walks through a stack of flat layers, from the face of entry downwards, with the index of refraction of the
+/// first; they do not reflect light between each other. The same bits for any number of threads. Errors are those of
+/// plain means: layers have no control variates.
+/// in    layers: at least one; all but the last of finite thickness; empty layers (thickness 0) are left out
+/// error as walk_slab
+SlabWalks walk_layers(std::span<const SlabLayer> layers, const SlabEntry& entry,
+                      const LaboratorySettings& settings);
 
 }  // namespace opaline

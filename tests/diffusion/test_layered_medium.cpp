@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "diffusion/layered_medium.h"
-#include "support/layered_walk.h"
 #include "transport/fresnel.h"
 #include "transport/half_space.h"
 
@@ -33,19 +32,6 @@ TEST(LayeredMedium, EqualLayersAreOne) {
   for (const double wave_number : {0., .3, 4.})
     EXPECT_NEAR(layered_exitance(three, 2.5, wave_number) / layered_exitance({&one, 1}, 2.5, wave_number), 1,
                 1e-7);
-}
-
-// Claim: the walks the other tests stand on agree with adding-doubling. Source: computed independently: reflectance of two
-// layers, albedo .9 over .99, optical thickness 1 and 2, and upside down. Tolerance: four standard errors.
-TEST(LayeredMedium, WalksAgreeWithAddingDoubling) {
-  const FlatLayer dark{.1, .9, 1}, bright{.02, 1.98, 1};
-  for (const auto& [layers, expected] :
-       {std::pair{std::array{dark, bright}, .45509696}, std::pair{std::array{bright, dark}, .56691158}}) {
-    const WalkedReflectance walked = walked_reflectance(layers, 1, 400'000);
-    EXPECT_NEAR(walked.value, expected, 4 * walked.error);
-  }
-  const WalkedReflectance skin = walked_reflectance(kSkin, 1.4, 400'000);
-  EXPECT_NEAR(skin.value, .23622435, 4 * skin.error);
 }
 
 // Claim: the equivalent medium has the reflectance of the stack: skin, diffuse light, exact half space against

@@ -6,9 +6,10 @@
 #include <array>
 #include <cmath>
 
-#include "support/layered_walk.h"
+#include "diffusion/layered_albedo.h"
 #include "support/scene_picture.h"
 #include "transport/half_space.h"
+#include "transport/laboratory.h"
 
 namespace opaline::test {
 namespace {
@@ -46,8 +47,11 @@ double mean_red(const std::string& layers, const std::string& medium,
 // radial profiles, 4 % for walks, two standard errors. Fails if: layers are not chosen by depth (dermis alone 14 % off), thin ones lose
 // optical thickness, or the boundary is calibrated to the first one.
 TEST(Layers, FlatSkin) {
-  const std::array layers{FlatLayer{.8, 4, .1}, FlatLayer{.2, 2, 2}, FlatLayer{.01, 1.2}};
-  const double truth = walked_reflectance(layers, 1.4, 400'000).value;
+  const std::array layers{SlabLayer{{.8, 4, 0, 1.4}, .1}, SlabLayer{{.2, 2, 0, 1.4}, 2},
+                          SlabLayer{{.01, 1.2, 0, 1.4}}};
+  LaboratorySettings settings;
+  settings.walks = 400'000;
+  const double truth = walk_layers(layers, kNormalEntry, settings).back.total.value;
   const double plain = HalfSpace(.2 / 2.2, 1.4).share(1);
   for (const auto& [method, tolerance] :
        {std::pair{"volume_diffusion", .03}, std::pair{"hierarchical", .05}}) {
@@ -55,6 +59,19 @@ TEST(Layers, FlatSkin) {
     const double returned = mean_red(kSkinLayers, "skin", by) / mean_red(kSkinLayers, "plain", by) * plain;
     EXPECT_NEAR(returned / truth, 1, tolerance) << by.front() << ' ' << by.size();
   }
+}
+
+// Claim: with the tabulated profile, which walks the stack, a face in even light returns what its layers do. Source: adding and
+// doubling, over the half space of the face beside it. Tolerance: 1 %. Fails if: the profile is that of the equivalent medium's walks.
+TEST(Layers, TabulatedStack) {
+  const std::array layers{FlatLayer{.8, 4, .1}, FlatLayer{.2, 2, 2}, FlatLayer{.01, 1.2}};
+  const double expected = layered_albedo(layers, 1.4) / half_space_albedo(.2 / 2.2, 1.4);
+  const auto returned = [&](const std::string& medium) {
+    return mean_red(kSkinLayers, medium,
+                    {"settings.method=hierarchical", "lights=[]", "surroundings=1",
+                     "media." + medium + ".profile=tabulated"});
+  };
+  EXPECT_NEAR(returned("skin") / returned("plain") / expected, 1, .01);
 }
 
 // Claim: layers of one medium are this medium, and thickness 0 leaves a layer out. Source: definition. Tolerance: 1 %, as cells

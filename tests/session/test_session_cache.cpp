@@ -139,7 +139,7 @@ TEST(SessionCache, WalkedProfilesAreKept) {
   StageCache cache(folder.path.string());
   for (const ChannelProfile& channel : profile.channels) {
     const TabulatedProfile& walked = std::get<TabulatedProfile>(channel);
-    const auto kept = cache.find(walked_profile_key(walked.absorbed, walked.eta), WalkedProfileCodec{});
+    const auto kept = cache.find(walked_profile_key(walked.medium), WalkedProfileCodec{});
     ASSERT_TRUE(kept);
     for (const double r : {.01, 1., 40.}) EXPECT_EQ(kept->density(r), walked.shape->get().table.density(r));
   }

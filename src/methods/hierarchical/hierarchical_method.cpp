@@ -88,11 +88,11 @@ void find_walked_profiles(BodyStages& stages) {
   for (const ChannelProfile& channel : stages.body.profile.channels) {
     const auto* profile = std::get_if<TabulatedProfile>(&channel);
     if (profile == nullptr || profile->mean_free_path == 0) continue;
-    const double absorbed = profile->absorbed, eta = profile->eta;
-    if (has_walked_table(absorbed, eta)) continue;
-    const StageKey key = walked_profile_key(absorbed, eta);
+    const WalkedMedium& walked = profile->medium;
+    if (has_walked_table(walked)) continue;
+    const StageKey key = walked_profile_key(walked);
     if (auto found = stages.store.find(key, WalkedProfileCodec{}))
-      take_walked_table(absorbed, eta, std::move(*found));
+      take_walked_table(walked, std::move(*found));
     else
       stages.store.keep(key, profile->shape->get().table, WalkedProfileCodec{});
   }

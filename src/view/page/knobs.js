@@ -23,8 +23,12 @@ const kWidestLinear = 1000, kDecade = 1;
 // Textures and spectra, shown as text.
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 const objectsOf = (owner) => Object.keys(owner).filter((key) => isObject(owner[key]));
-const textOf = ({texture, spectrum, illuminant, blackbody}) =>
-  texture ?? spectrum ?? illuminant ?? (blackbody ? `black body, ${blackbody} K` : "spectrum");
+const kPhotometric = ["lm", "cd", "lx", "nit"];
+function textOf(value) {
+  const {texture, spectrum, illuminant, blackbody} = value, unit = kPhotometric.find((key) => key in value);
+  const colour = texture ?? spectrum ?? illuminant ?? (blackbody ? `black body, ${blackbody} K` : unit ? "" : "spectrum");
+  return [unit ? `${value[unit]} ${unit}` : "", colour].filter(Boolean).join(", ");
+}
 
 const make = (name, properties = {}, ...children) => {
   const element = Object.assign(document.createElement(name), properties);
