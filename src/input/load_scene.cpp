@@ -210,12 +210,10 @@ void share_lengths(std::span<Scene> scenes) {
 }
 
 /// A scene with spectra is read once for each group of wavelengths.
-Scene read_at_wavelengths(const Document& document) {
-  if (has_photometric_values(document)) {
-    Document radiometric = document;
-    resolve_photometric_values(radiometric);
-    return read_at_wavelengths(radiometric);
-  }
+Scene read_at_wavelengths(const Document& given) {
+  std::optional<Document> radiometric;
+  if (has_photometric_values(given)) resolve_photometric_values(radiometric.emplace(given));
+  const Document& document = radiometric ? *radiometric : given;
   const std::optional<int> count = wavelengths_of(document);
   if (!count) return read_scene(document);
   std::vector<Scene> scenes;
