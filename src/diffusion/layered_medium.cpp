@@ -108,10 +108,14 @@ std::vector<FlatLayer> flat_layers(const Medium& medium, std::size_t channel) {
 
 ReducedMedium equivalent_medium(std::span<const FlatLayer> layers, double eta) {
   const double mismatch = boundary_mismatch(eta), total = layered_exitance(layers, mismatch, 0);
-  double length = 0;  // mean free path of the first scattering layer
-  for (const FlatLayer& layer : layers)
-    if (const double extinction = layer.sigma_a + layer.sigma_s_prime; extinction > 0 && !(length > 0))
-      length = 1 / extinction;
+  double length = 0, shortest = INFINITY,
+         longest = 0;  // mean free paths: of the first layer with matter; of all
+  for (const FlatLayer& layer : layers) {
+    const double extinction = layer.sigma_a + layer.sigma_s_prime;
+    if (!(extinction > 0 && layer.thickness > 0)) continue;
+    if (!(length > 0)) length = 1 / extinction;
+    shortest = std::min(shortest, 1 / extinction), longest = std::max(longest, 1 / extinction);
+  }
   if (!(total > 0)) return {length, 1, eta};
   const auto homogeneous = [&](double absorbed, double wave_number) {
     const FlatLayer layer{absorbed, 1 - absorbed};
@@ -137,7 +141,7 @@ ReducedMedium equivalent_medium(std::span<const FlatLayer> layers, double eta) {
   };
   const double of_stack = half([&](double k) { return layered_exitance(layers, mismatch, k); }, length);
   const double of_one = half([&](double k) { return homogeneous(absorbed, k); }, 1);
-  return {of_one / of_stack, absorbed, eta};
+  return {std::clamp(of_one / of_stack, shortest, longest), absorbed, eta};
 }
 
 }  // namespace opaline

@@ -56,9 +56,12 @@ SlabWalks walk(const WalkedMedium& walked) {
 double decay_of(const WalkedMedium& medium) {
   if (medium.layers.empty()) return decay_constant(medium.absorbed);
   double slowest = std::numeric_limits<double>::infinity();
-  for (const FlatLayer& layer : medium.layers)
-    if (const double extinction = layer.sigma_a + layer.sigma_s_prime; extinction * layer.thickness > 0)
-      slowest = std::min(slowest, extinction * decay_constant(layer.sigma_a / extinction));
+  for (const FlatLayer& layer : medium.layers) {
+    const double extinction = layer.sigma_a + layer.sigma_s_prime;
+    if (!(extinction * layer.thickness > 0)) continue;
+    const double absorbed = layer.sigma_a / extinction;
+    slowest = std::min(slowest, extinction * (absorbed < 1 ? decay_constant(absorbed) : 1));
+  }
   return std::isfinite(slowest) ? slowest : 0;
 }
 

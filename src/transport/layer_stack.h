@@ -57,16 +57,17 @@ class LayerStack {
     const double cosine = direction.z;
     const bool is_upwards = cosine > 0;
     double depth = std::max(0., -position.z), left = optical_distance, distance = 0;
-    std::size_t i = layer_at(depth, is_upwards);
+    std::size_t i = layer_at(depth, is_upwards), latest = i;
     if (cosine == 0) return {left / layers_[i].medium.sigma_t(), i};
     for (;;) {
+      const double extinction = layers_[i].medium.sigma_t();
       const double across = (is_upwards ? depth - top_of(i) : bottoms_[i] - depth) / std::abs(cosine),
                    within = optical(i, across);
       const bool is_last = is_upwards ? i == 0 : i + 1 == layers_.size();
-      if (left < within || is_last) {
-        const double extinction = layers_[i].medium.sigma_t();
-        return {distance + (extinction > 0 ? std::min(across, left / extinction) : across), i};
-      }
+      if (extinction > 0) latest = i;
+      // By rounding, the end of the last layer with matter may be passed.
+      if (is_last && !(extinction > 0)) return {distance, latest};
+      if (left < within || is_last) return {distance + std::min(across, left / extinction), i};
       left -= within;
       distance += across;
       depth = is_upwards ? top_of(i) : bottoms_[i];

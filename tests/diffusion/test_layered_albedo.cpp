@@ -78,5 +78,23 @@ TEST(LayeredProfile, IsTheWalks) {
         << ring.high << " mm, standard error " << ring.within.error;
 }
 
+// Claim: profiles of extreme stacks are finite: layers that only absorb, without matter, or far denser than others. Source: the
+// header. Fails if: the decay of a layer that does not scatter is asked for.
+TEST(LayeredProfile, Extremes) {
+  for (const std::vector<FlatLayer>& layers :
+       std::vector<std::vector<FlatLayer>>{{{1, 0, .1}, {.1, 1}},
+                                           {{.1, 1, .1}, {5, 0}},
+                                           {{0, 0, 2}, {.1, 1}},
+                                           {{.1, 1, 1}, {0, 0}},
+                                           {{0, 1e-6, 1}, {1, 1e6}},
+                                           {{1e-9, 1e6, 1e-6}, {1e-9, 1e-3}}}) {
+    const TabulatedProfile profile = make_layered_profile(layers, equivalent_medium(layers, 1.4));
+    for (const double r : {1e-6, .1, 10.}) {
+      EXPECT_TRUE(std::isfinite(diffuse_reflectance_profile(profile, r))) << layers[0].sigma_a << " " << r;
+      EXPECT_LE(diffuse_reflectance_within(profile, r), 1);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace opaline

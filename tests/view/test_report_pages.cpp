@@ -197,8 +197,9 @@ TEST(LongReportPages, FollowTheReader) {
 TEST(LongReportPages, DrawAMedium) {
   ProfileRequest request;
   request.name = "<b>jelly</b>";
-  request.coefficients = {{.1, .1, 0}, {1, 1, 0}};
   request.thickness = 2;
+  for (const auto& [name, sigma_s] : {std::pair{"R", 1.}, {"G", 1.}, {"B", 0.}})
+    request.channels.push_back({name, {{{.1 * sigma_s, sigma_s, 0, request.eta}, request.thickness}}});
   request.walks = 2000;
   Monitor monitor;
   ProfileReport report = measure_profiles(request, monitor);
