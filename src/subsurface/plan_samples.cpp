@@ -133,18 +133,20 @@ bool is_too_thin_for_cells(const BodyPlan& group) {
 
 namespace {
 
-/// Cell size of volume_diffusion in lengths of the body: as set, smaller to resolve the decay of light and thin
-/// bodies or if the cells are few.
-double resolving_cell(const Scene& scene, const World& world, double fewest, const BodyPlan& group) {
+/// Cell size of volume_diffusion: as set, smaller to resolve the decay of light and thin bodies, or if the cells are
+/// few.
+/// in    fading: smallest diffuse mean free path, mm
+double resolving_cell(const Scene& scene, const World& world, double fewest, const BodyPlan& group,
+                      double fading) {
   constexpr double kAcrossThin = 2, kSmallest = .25;
   constexpr double kOfVarying = .5;    // a cell has one medium, and light blurs detail below a mean free path
   constexpr double kFewestFaces = 60;  // fewest faces of cells, on the surface
   constexpr double kEasyFaces = .4;    // per sample of `fewest`; if there are fewer, cells are smaller
   const Medium& medium = scene.media[group.medium];
-  double cell = scene.settings.cell_size *
-                (varies_inside(medium) && medium.layers.empty()
-                     ? kOfVarying * short_length_of(scene, world, group)
-                     : std::min(group.smallest_mean_free_path, kPerFading * shortest_fading(medium)));
+  double cell =
+      scene.settings.cell_size * (varies_inside(medium) && medium.layers.empty()
+                                      ? kOfVarying * short_length_of(scene, world, group)
+                                      : std::min(group.smallest_mean_free_path, kPerFading * fading));
   const double by_default = cell * Settings{}.cell_size / scene.settings.cell_size;
   cell *= std::clamp(std::sqrt(group.area / (kEasyFaces * fewest)) / by_default, .25, 1.);
   if (group.thickness > 0) cell = std::min(cell, std::max(group.thickness / kAcrossThin, kSmallest * cell));
@@ -161,14 +163,20 @@ double smallest_cell(const Settings& settings, const BodyPlan& group) {
 }  // namespace
 
 bool is_too_large_for_layers(const Scene& scene, const World& world, double fewest, const BodyPlan& group) {
-  return !scene.media[group.medium].layers.empty() &&
-         resolving_cell(scene, world, fewest, group) < smallest_cell(scene.settings, group);
+  const Medium& medium = scene.media[group.medium];
+  if (medium.layers.empty()) return false;
+  double fading = shortest_fading(medium);
+  if (medium.shortest_fading > 0)
+    fading = std::min(fading, medium.shortest_fading);  // one method for all wavelengths
+  return resolving_cell(scene, world, fewest, group, fading) < smallest_cell(scene.settings, group);
 }
 
 void choose_cells(const Scene& scene, const World& world, double fewest, BodyPlan& group,
                   std::vector<std::string>& warnings) {
   const double length = group.smallest_mean_free_path;
-  group.cell = std::max(resolving_cell(scene, world, fewest, group), smallest_cell(scene.settings, group));
+  const double fading = shortest_fading(scene.media[group.medium]);
+  group.cell =
+      std::max(resolving_cell(scene, world, fewest, group, fading), smallest_cell(scene.settings, group));
   if (group.cell > widest_cell(scene.settings) * length)
     warnings.push_back(fmt::format(
         "{}: light leaves within {:.3g} mm, but because of settings.max_samples the cells are {:.3g} mm wide",

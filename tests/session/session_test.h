@@ -17,8 +17,8 @@ namespace opaline::test {
 inline Scene two_balls() {
   Scene scene;
   scene.media = {marble(), grey_medium(.4, .01, 1.3)};
-  scene.shapes = {translucent("left", SphereShape{{-15, 10, 0}, 10}, 0),
-                  translucent("right", SphereShape{{15, 10, 0}, 10}, 1)};
+  scene.shapes = {translucent("left", SphereShape{{-15, 10, 0}, 10, kLeastFineness}, 0),
+                  translucent("right", SphereShape{{15, 10, 0}, 10, kLeastFineness}, 1)};
   Shape floor;
   floor.name = "floor";
   floor.source = QuadShape{{-60, -1, 60}, {120, 0, 0}, {0, 0, -120}};

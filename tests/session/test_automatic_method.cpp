@@ -2,6 +2,8 @@
 // The method `auto`: the choice for each body, and its reasons.
 #include <fmt/format.h>
 
+#include "plan/make_plan.h"
+#include "plan/other_wavelengths.h"
 #include "session_test.h"
 #include "support/pictures.h"
 
@@ -111,6 +113,27 @@ TEST(AutomaticMethod, LayersOfLargeBodiesAreEquivalentMedia) {
   EXPECT_EQ(chosen(large), std::vector{Method::hierarchical});
   EXPECT_TRUE(has_reason(large, "cells as small as its layers require"));
   EXPECT_TRUE(same_pixels(cold_picture(large), cold_picture(with_method(large, Method::hierarchical))));
+}
+
+// Claim: a layered body has the same method at all wavelengths. Source: one image. Fails if: each three wavelengths choose by their
+// own decay of light.
+TEST(AutomaticMethod, LayersHaveOneMethodAtAllWavelengths) {
+  for (double radius = 2; radius < 20; radius *= 1.1) {
+    const Scene scene = parse_scene(fmt::format(R"({{"media": {{
+        "outer": {{"sigma_a": {{"nm": [400, 700], "values": [5, 0.01]}}, "sigma_s_prime": 10}},
+        "inner": {{"sigma_a": {{"nm": [400, 700], "values": [5, 0.01]}}, "sigma_s_prime": 10}},
+        "skin": {{"layers": [{{"medium": "outer", "thickness": 0.1}}, {{"medium": "inner"}}]}}}},
+      "shapes": [{{"sphere": {{"radius": {0}}}, "medium": "skin"}}],
+      "lights": [{{"type": "point", "position": [0, 90, 0], "intensity": 900}}], "film": {{"wavelengths": 12}},
+      "settings": {{"max_samples": 20000, "samples": 2000}}}})",
+                                                radius),
+                                    "ball.json", {});
+    const World world = make_world(scene);
+    const Method first = make_plan(scene, world).groups.at(0).method;
+    for (std::size_t g = 0; g < scene.other_wavelengths.size(); ++g)
+      EXPECT_EQ(make_plan(at_other_wavelengths(scene, g), world).groups.at(0).method, first)
+          << radius << " " << g;
+  }
 }
 
 // Claim: a session keeps cells that suit an edited medium, and its samples and shadow rays with them; it cuts the surface anew

@@ -362,6 +362,14 @@ Image picture(int width, int height, float step) {
   return image;
 }
 
+Scene with_few_triangles(Scene scene) {
+  for (Shape& shape : scene.shapes) {
+    if (auto* sphere = std::get_if<SphereShape>(&shape.source)) sphere->fineness = kLeastFineness;
+    if (auto* torus = std::get_if<TorusShape>(&shape.source)) torus->fineness = kLeastFineness;
+  }
+  return scene;
+}
+
 // Claim: whatever key of a scene changes, the session's next picture is that of a new session, and another than before.
 // Source: Session. Fails if: a kept result's key lacks a value that it was computed from. A new key is to be added here.
 class EveryKey : public ::testing::TestWithParam<const char*> {};
@@ -377,7 +385,7 @@ TEST_P(EveryKey, IsNoticed) {
   write_exr(folder.file("room.exr"), picture(8, 4, .37f), false);
   write_exr(folder.file("night.exr"), picture(8, 4, .11f), false);
   const auto scene_with = [&](const Overrides& overrides) {
-    return parse_scene(kScene, folder.file("scene.json"), overrides);
+    return with_few_triangles(parse_scene(kScene, folder.file("scene.json"), overrides));
   };
   for (const Change& change : changes()) {
     if (!change.key.starts_with(GetParam())) continue;
