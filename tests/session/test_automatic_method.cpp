@@ -118,10 +118,10 @@ TEST(AutomaticMethod, LayersOfLargeBodiesAreEquivalentMedia) {
 // Claim: a layered body has the same method at all wavelengths. Source: one image. Fails if: each three wavelengths choose by their
 // own decay of light.
 TEST(AutomaticMethod, LayersHaveOneMethodAtAllWavelengths) {
-  for (double radius = 2; radius < 20; radius *= 1.1) {
+  for (double radius = .25; radius < .8; radius *= 1.05) {
     const Scene scene = parse_scene(fmt::format(R"({{"media": {{
-        "outer": {{"sigma_a": {{"nm": [400, 700], "values": [5, 0.01]}}, "sigma_s_prime": 10}},
-        "inner": {{"sigma_a": {{"nm": [400, 700], "values": [5, 0.01]}}, "sigma_s_prime": 10}},
+        "outer": {{"sigma_a": {{"nm": [400, 700], "values": [30, 0.01]}}, "sigma_s_prime": 10}},
+        "inner": {{"sigma_a": {{"nm": [400, 700], "values": [30, 0.01]}}, "sigma_s_prime": 10}},
         "skin": {{"layers": [{{"medium": "outer", "thickness": 0.1}}, {{"medium": "inner"}}]}}}},
       "shapes": [{{"sphere": {{"radius": {0}}}, "medium": "skin"}}],
       "lights": [{{"type": "point", "position": [0, 90, 0], "intensity": 900}}], "film": {{"wavelengths": 12}},
