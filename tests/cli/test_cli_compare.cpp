@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // `opaline compare`: figures, exit codes, and answers to pictures that do not fit.
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <memory>
 
 #include "opaline/image.h"
 #include "run_program.h"
+#include "support/write_raw_exr.h"
 
 namespace opaline {
 namespace {
@@ -36,13 +35,8 @@ struct Gallery : ScratchFolder {
   }
 };
 
-/// Without write_exr, which writes 0 for what is not finite.
 std::string put_raw(const std::string& path, const Image& image) {
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("exr");
-  OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(image.channels.size()), OIIO::TypeFloat);
-  spec.channelnames = image.channels;
-  EXPECT_TRUE(output->open(path, spec) && output->write_image(OIIO::TypeFloat, image.pixels.data()));
-  EXPECT_TRUE(output->close());
+  test::write_raw_exr(path, image);
   return path;
 }
 

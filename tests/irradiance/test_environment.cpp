@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures that shine from all around.
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "opaline/error.h"
 #include "opaline/image.h"
 #include "support/lighting.h"
+#include "support/write_raw_exr.h"
 
 namespace opaline {
 namespace {
@@ -237,18 +237,7 @@ class EnvironmentFile : public testing::Test {
     write_exr((folder_ / "room.exr").string(), image, false);
     return (folder_ / "room.exr").string();
   }
-  /// As it is: write_exr writes 0 for what is not finite.
-  void write_raw(const Image& image) const {
-    const auto output = OIIO::ImageOutput::create("exr");
-    OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()), OIIO::TypeFloat);
-    spec.channelnames = image.channels;
-    spec.x = image.crop_x;
-    spec.y = image.crop_y;
-    spec.full_width = image.full_width;
-    spec.full_height = image.full_height;
-    ASSERT_TRUE(output->open((folder_ / "room.exr").string(), spec) &&
-                output->write_image(OIIO::TypeFloat, image.pixels.data()) && output->close());
-  }
+  void write_raw(const Image& image) const { test::write_raw_exr((folder_ / "room.exr").string(), image); }
   Scene scene(const std::string& light = R"("type": "environment", "file": "room.exr")") const {
     return parse_scene(R"({"shapes": [{"sphere": {"radius": 1}}], "lights": [{)" + light + "}]}",
                        (folder_ / "scene.json").string());
