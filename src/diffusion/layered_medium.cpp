@@ -141,7 +141,9 @@ ReducedMedium equivalent_medium(std::span<const FlatLayer> layers, double eta) {
   };
   const double of_stack = half([&](double k) { return layered_exitance(layers, mismatch, k); }, length);
   const double of_one = half([&](double k) { return homogeneous(absorbed, k); }, 1);
-  return {std::clamp(of_one / of_stack, shortest, longest), absorbed, eta};
+  // An empty last layer would make it infinite.
+  constexpr double kBeyond = 8;
+  return {std::clamp(of_one / of_stack, shortest / kBeyond, kBeyond * longest), absorbed, eta};
 }
 
 }  // namespace opaline
