@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Colour differences (CIEDE2000, mean and largest) between spectral images and images in red, green and blue: a ball of
 // each measured preset, and of skin by its pigments, in the light of D65, A and FL2. The lamp's white is the white of
-// both. Skin in red, green and blue has the coefficients at 626.66, 541.92 and 443.15 nm.
+// both. Media in red, green and blue have the coefficients at 626.66, 541.92 and 443.15 nm.
 // usage: bench_spectra [PIXELS]
 #include <fmt/format.h>
 
@@ -9,25 +9,18 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
-#include <functional>
 #include <string>
+#include <vector>
 
 #include "ciede2000.h"
 #include "input/load_scene.h"
 #include "input/presets.h"
 #include "opaline/session.h"
-#include "spectra/tissue.h"
 #include "spectra/wavelengths.h"
 
 namespace {
 
 using namespace opaline;
-
-constexpr std::array kRedGreenBlue{626.657, 541.924, 443.150};  // nm
-
-std::string triple(const Rgb& rgb) {
-  return fmt::format("[{}, {}, {}]", rgb.x, rgb.y, rgb.z);
-}
 
 /// XYZ of linear Rec.709 (IEC 61966-2-1).
 Vec3d to_xyz(const Rgb& c) {
@@ -45,25 +38,29 @@ Vec3d to_lab(const Rgb& rgb, const Rgb& white_rgb) {
   return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-struct Rendered {
-  Image image;
-  int wavelengths = 3;
-};
-
-/// media: JSON with the medium "m"; light: a colour of unit luminance.
-Rendered ball_of(const std::string& media, const std::string& light, int pixels) {
-  const Scene scene =
-      parse_scene(fmt::format(
-                      R"({{"media": {}, "shapes": [{{"sphere": {{"radius": 10}}, "medium": "m"}}],
+/// media: JSON with the medium "m"; light: an irradiance as JSON.
+Scene ball_of(const std::string& media, const std::string& light, int pixels,
+              const std::vector<std::string>& overrides = {}) {
+  return parse_scene(fmt::format(R"({{"media": {}, "shapes": [{{"sphere": {{"radius": 10}}, "medium": "m"}}],
         "lights": [{{"type": "directional", "direction": [-1, -1, -2], "irradiance": {}}}],
         "camera": {{"position": [0, 0, 60], "look_at": [0, 0, 0], "field_of_view": 22}},
         "film": {{"resolution": [{}, {}], "pixel_type": "float"}},
         "settings": {{"method": "hierarchical", "samples": 20000}}}})",
-                      media, light, pixels, pixels),
-                  "ball.json", {});
+                                 media, light, pixels, pixels),
+                     "ball.json", overrides);
+}
+
+/// Coefficients at three wavelengths as those of red, green and blue, in a light of this colour.
+Scene in_red_green_and_blue(Scene at_three_wavelengths, const Rgb& light) {
+  at_three_wavelengths.wavelengths.reset();
+  std::get<DirectionalLight>(at_three_wavelengths.lights.at(0).source).irradiance = light;
+  return at_three_wavelengths;
+}
+
+Image rendered(const Scene& scene) {
   Session session;
   session.edit(scene);
-  return {session.render().image, scene.wavelengths ? int(3 * (1 + scene.other_wavelengths.size())) : 0};
+  return session.render().image;
 }
 
 struct Difference {
@@ -89,38 +86,21 @@ Difference difference_of(const Image& a, const Image& b, const Rgb& white) {
   return difference;
 }
 
-/// A medium, in its spectral form and in red, green and blue.
 struct Subject {
-  std::string name, spectral, rgb;
+  std::string name, media;
 };
 
 /// Epidermis with this fraction of melanin over dermis and fat, as scenes/skin-tones.json.
 Subject skin(double melanin) {
-  const auto tissue = [](double of_melanin, double blood) {
-    Tissue t;
-    t.melanin = of_melanin, t.blood = blood;
-    return tissue_absorption(t);
-  };
-  const auto at_nodes = [](const std::function<double(double)>& value) {
-    return triple({value(kRedGreenBlue[0]), value(kRedGreenBlue[1]), value(kRedGreenBlue[2])});
-  };
-  const auto scattering = [](double factor) {
-    return [factor](double nm) { return factor * (14.74 * std::pow(nm, -.22) + 2.2e11 * std::pow(nm, -4)); };
-  };
-  constexpr double kBlood = .02;
-  const Spectrum epidermis = tissue(melanin, 0), dermis = tissue(0, kBlood);
-  const std::string rest =
-      R"(, "fat": {"sigma_a": 0.01, "sigma_s_prime": 1.2}, "m": {"layers": [{"medium": "epidermis", "thickness": 0.1},
-          {"medium": "dermis", "thickness": 1.5}, {"medium": "fat"}]}})";
-  const std::string spectral = fmt::format(
-      R"({{"epidermis": {{"sigma_a": {{"tissue": {{"melanin": {}}}}}, "sigma_s_prime": {{"powers": [[14.74, -0.22], [2.2e11, -4]]}}, "specular_ior": 1.4}},
-          "dermis": {{"sigma_a": {{"tissue": {{"blood": {}}}}}, "sigma_s_prime": {{"powers": [[7.37, -0.22], [1.1e11, -4]]}}}})",
-      melanin, kBlood);
-  const std::string rgb = fmt::format(
-      R"({{"epidermis": {{"sigma_a": {}, "sigma_s_prime": {}, "specular_ior": 1.4}}, "dermis": {{"sigma_a": {}, "sigma_s_prime": {}}})",
-      at_nodes([&](double nm) { return epidermis.at(nm); }), at_nodes(scattering(1)),
-      at_nodes([&](double nm) { return dermis.at(nm); }), at_nodes(scattering(.5)));
-  return {fmt::format("skin, {:g} % melanin", 100 * melanin), spectral + rest, rgb + rest};
+  return {fmt::format("skin, {:g} % melanin", 100 * melanin), fmt::format(R"({{
+      "epidermis": {{"sigma_a": {{"tissue": {{"melanin": {}}}}}, "specular_ior": 1.4,
+                    "sigma_s_prime": {{"powers": [[14.74, -0.22], [2.2e11, -4]]}}}},
+      "dermis": {{"sigma_a": {{"tissue": {{"blood": 0.02}}}},
+                 "sigma_s_prime": {{"powers": [[7.37, -0.22], [1.1e11, -4]]}}}},
+      "fat": {{"sigma_a": 0.01, "sigma_s_prime": 1.2}},
+      "m": {{"layers": [{{"medium": "epidermis", "thickness": 0.1}}, {{"medium": "dermis", "thickness": 1.5}},
+                       {{"medium": "fat"}}]}}}})",
+                                                                          melanin)};
 }
 
 /// Three pairs of Sharma, Wu & Dalal 2005.
@@ -139,10 +119,9 @@ int main(int argc, char** argv) try {
     return 2;
   }
   std::vector<Subject> subjects;
-  for (const Preset& preset : presets()) {
-    const std::string media = fmt::format(R"({{"m": {{"preset": "{}"}}}})", preset.name);
-    subjects.push_back({std::string(preset.name), media, media});
-  }
+  for (const Preset& preset : presets())
+    subjects.push_back(
+        {std::string(preset.name), fmt::format(R"({{"m": {{"preset": "{}"}}}})", preset.name)});
   for (const double melanin : {.01, .05, .15, .4}) subjects.push_back(skin(melanin));
   constexpr std::array<std::string_view, 3> kLamps{"D65", "A", "FL2"};
   fmt::print("{:<20}", "dE00, mean (largest)");
@@ -153,12 +132,13 @@ int main(int argc, char** argv) try {
     std::string counts;
     for (const std::string_view lamp : kLamps) {
       const Rgb white = exact_color(with_unit_luminance(illuminant(lamp)), {{560}, {1}});
-      const Rendered spectral = ball_of(
-          subject.spectral, fmt::format(R"({{"illuminant": "{}", "scale": 3.14159265}})", lamp), pixels);
-      const Rendered rgb = ball_of(subject.rgb, triple(white * 3.14159265), pixels);
-      const Difference difference = difference_of(spectral.image, rgb.image, white);
+      const std::string light = fmt::format(R"({{"illuminant": "{}", "scale": 3.14159265}})", lamp);
+      const Scene spectral = ball_of(subject.media, light, pixels);
+      const Scene rgb = in_red_green_and_blue(ball_of(subject.media, light, pixels, {"film.wavelengths=3"}),
+                                              white * 3.14159265);
+      const Difference difference = difference_of(rendered(spectral), rendered(rgb), white);
       fmt::print("{:>8.2f} ({:>5.2f})", difference.mean, difference.largest);
-      counts += fmt::format("{}{}", counts.empty() ? "" : ", ", spectral.wavelengths);
+      counts += fmt::format("{}{}", counts.empty() ? "" : ", ", 3 * (1 + spectral.other_wavelengths.size()));
     }
     fmt::print("{:>14}\n", counts);
     std::fflush(stdout);

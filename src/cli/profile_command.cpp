@@ -55,7 +55,7 @@ double anisotropy_of(const std::string& text) {
   return g == nullptr ? 0 : g->number;
 }
 
-/// The medium's name, the scene's wavelengths, or none.
+/// A medium with its name, at wavelengths or in red, green and blue.
 struct GivenMedium {
   std::string name;
   Medium medium;
@@ -65,7 +65,8 @@ struct GivenMedium {
 /// A scene's medium, at three wavelengths if the scene has spectra.
 GivenMedium medium_of_scene(const std::string& file, const std::string& name) {
   Scene scene = load_scene(file, {});
-  if (scene.wavelengths) scene = load_scene(file, std::vector<std::string>{"film.wavelengths=3"});
+  if (!scene.other_wavelengths.empty())
+    scene = load_scene(file, std::vector<std::string>{"film.wavelengths=3"});
   const auto found = std::ranges::find(scene.media, name, &Medium::name);
   if (found != scene.media.end()) return {name, *found, scene.wavelengths};
   std::vector<std::string_view> names;

@@ -29,14 +29,13 @@ ReducedMedium reduce(const ArtistMedium& medium, std::size_t channel, ProfileKin
           eta};
 }
 
+/// in    equivalent: lengths in mm, as the medium's
+/// out   lengths in `unit`
 TabulatedProfile layered_profile(const Medium& medium, std::size_t channel, const ReducedMedium& equivalent,
                                  double unit) {
-  std::vector<FlatLayer> layers = flat_layers(medium, channel);
-  for (FlatLayer& layer : layers) {
-    layer.sigma_a *= unit, layer.sigma_s_prime *= unit;
-    layer.thickness /= unit;
-  }
-  return make_layered_profile(layers, equivalent);
+  TabulatedProfile profile = make_layered_profile(flat_layers(medium, channel), equivalent);
+  profile.mean_free_path /= unit;
+  return profile;
 }
 
 template <std::size_t... kKinds>
@@ -153,13 +152,13 @@ DiffuseProfile make_diffuse_profile(const Medium& medium, double unit) {
     ReducedMedium reduced =
         std::visit([&](const auto& coefficients) { return reduce(coefficients, c, kind, medium.eta); },
                    medium.coefficients);
+    const bool is_stack =
+        kind == ProfileKind::tabulated && !medium.layers.empty() && reduced.mean_free_path > 0;
+    if (is_stack) profile.channels[c] = layered_profile(medium, c, reduced, unit);
     reduced.mean_free_path /= unit;
     reduced.thickness = profile_thickness(medium) / unit;
     reduced.fit = profile_fit(medium);
-    if (kind == ProfileKind::tabulated && !medium.layers.empty() && reduced.mean_free_path > 0)
-      profile.channels[c] = layered_profile(medium, c, reduced, unit);
-    else
-      profile.channels[c] = make_channel_profile(kind, reduced);
+    if (!is_stack) profile.channels[c] = make_channel_profile(kind, reduced);
     profile.mean_free_path[c] = reduced.mean_free_path;
     if (reduced.mean_free_path > 0)
       profile.diffuse_mean_free_path[c] = reduced.mean_free_path / std::sqrt(3 * reduced.absorbed);

@@ -5,7 +5,6 @@
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <vector>
 
 #include "transport/smooth_boundary.h"
 

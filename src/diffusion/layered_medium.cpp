@@ -108,8 +108,8 @@ std::vector<FlatLayer> flat_layers(const Medium& medium, std::size_t channel) {
 
 ReducedMedium equivalent_medium(std::span<const FlatLayer> layers, double eta) {
   const double mismatch = boundary_mismatch(eta), total = layered_exitance(layers, mismatch, 0);
-  double length = 0, shortest = INFINITY,
-         longest = 0;  // mean free paths: of the first layer with matter; of all
+  double length = 0;                        // mean free path of the first layer with matter
+  double shortest = INFINITY, longest = 0;  // any layer with matter
   for (const FlatLayer& layer : layers) {
     const double extinction = layer.sigma_a + layer.sigma_s_prime;
     if (!(extinction > 0 && layer.thickness > 0)) continue;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,7 +46,7 @@ void visit_photometric(Tree& root, const Visit& visit) {
   }
 }
 
-/// Light in the units of a scene: its flux over the quantity of its row, by a light's shape.
+/// A light's flux over its intensity or radiance, by its shape.
 struct LightShape {
   std::string section;
   ObjectReader reader;
@@ -172,9 +173,8 @@ bool has_photometric_values(const Document& document) {
 }
 
 void resolve_photometric_values(Document& document) {
-  const Document given = document;  // values refer to unchanged nodes
   visit_photometric(document.root, [&](Node& node, const Node& owner, const std::string& path) {
-    resolve(given, node, owner, path);
+    resolve(document, node, owner, path);
   });
 }
 

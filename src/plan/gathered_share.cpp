@@ -72,7 +72,7 @@ double gathered_share(const Scene& scene, const World& world) {
   for (const Bounds& box : world.boxes)
     boxes.push_back({into_world(world, box.low), into_world(world, box.high)});
   double most = 0;
-  for (std::size_t m = 0; m < world.meshes.size(); ++m)
+  for (std::size_t m = 0; m < world.meshes.size() && most < kLargeShare; ++m)
     most = std::max(most, own_share(scene.shapes[m].source) + share_of(world, m, boxes));
   return std::min(1., most);
 }

@@ -6,8 +6,10 @@
 
 namespace opaline {
 
-/// Approximate upper bound of the share of gathered rays meeting a surface, of the shape with the largest mean,
-/// [0, 1]: other shapes by their bounding boxes, the own one by its kind.
+inline constexpr double kLargeShare = .05;
+
+/// Approximate upper bound of the share of gathered rays meeting a surface, [0, 1]: the largest mean over a shape, or
+/// the first above kLargeShare. Other shapes are their bounding boxes; the own one counts by its kind.
 double gathered_share(const Scene& scene, const World& world);
 
 }  // namespace opaline

@@ -80,7 +80,8 @@ void check_bounces(const Scene& scene) {
 /// Memory for gathering bounced light: little where few rays meet a surface; bench_plan. None for methods tracing
 /// paths instead.
 std::size_t bytes_of_bounces(const Scene& scene, const World& world, std::size_t samples) {
-  constexpr double kBuffers = 13e6, kAtSamples = 15e6, kSample = 150, kWithoutHits = .3, kOfShare = 15;
+  constexpr double kBuffers = 13e6, kAtSamples = 15e6, kSample = 150, kWithoutHits = .3,
+                   kOfShare = .7 / kLargeShare;
   if (bounces_of(scene) == 0 || !method_of(scene.settings.method).separates_lights()) return 0;
   return std::size_t((kBuffers + std::min(kAtSamples, kSample * double(samples))) *
                      std::min(1., kWithoutHits + kOfShare * gathered_share(scene, world)));

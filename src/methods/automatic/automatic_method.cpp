@@ -27,8 +27,9 @@ void AutomaticMethod::plan(const PlanningInput& input, BodyPlan& body,
                            std::vector<std::string>& warnings) const {
   body.reason_against_method = named_by_scene(input.scene, body);
   if (is_too_large_for_layers(input.scene, input.world, input.fewest_samples, body))
-    body.reason_against_method =
-        fmt::format("cells as small as its layers require would exceed {:.2g} million", kMostCells / 1e6);
+    body.reason_against_method = fmt::format(
+        "cells as small as its layers require would exceed {:.2g} million or settings.max_samples",
+        kMostCells / 1e6);
   body.method = body.reason_against_method.empty() ? Method::volume_diffusion : Method::hierarchical;
   method_of(body.method).plan(input, body, warnings);
 }
