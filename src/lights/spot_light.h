@@ -9,22 +9,28 @@
 #include "lights/light_kind.h"
 
 namespace opaline {
-inline constexpr double kSpotRadians = std::numbers::pi / 180;
-inline constexpr double kLeastSpotFade = 1e-3;  ///< minimum falloff range of the cosine, as in glTF
+/// Cosines of the falloff: at the rim, and their range.
+struct SpotFalloff {
+  double rim, range;
+};
+inline SpotFalloff falloff(const SpotLight& light) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  constexpr double kLeastFade = 1e-3;  // minimum range, as in glTF
+  const double rim = std::cos(light.outer_angle * kRadians), bright = std::cos(light.inner_angle * kRadians);
+  return {rim, std::max(kLeastFade, bright - rim)};
+}
 
 /// From 1 within the inner cone to 0 at the rim: the square of a ramp in the cosine (KHR_lights_punctual).
 inline double fade(const SpotLight& light, double cosine) {
-  const double rim = std::cos(light.outer_angle * kSpotRadians),
-               bright = std::cos(light.inner_angle * kSpotRadians);
-  const double ramp = std::clamp((cosine - rim) / std::max(kLeastSpotFade, bright - rim), 0., 1.);
+  const auto [rim, range] = falloff(light);
+  const double ramp = std::clamp((cosine - rim) / range, 0., 1.);
   return ramp * ramp;
 }
 
 /// Integral of the falloff over all directions, sr.
 inline double solid_angle(const SpotLight& light) {
-  const double rim = std::cos(light.outer_angle * kSpotRadians),
-               bright = std::cos(light.inner_angle * kSpotRadians);
-  const double range = std::max(kLeastSpotFade, bright - rim), faded = std::min(1., rim + range) - rim;
+  const auto [rim, range] = falloff(light);
+  const double faded = std::min(1., rim + range) - rim;
   return 2 * std::numbers::pi * (faded * faded * faded / (3 * range * range) + 1 - rim - faded);
 }
 
