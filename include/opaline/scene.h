@@ -377,7 +377,12 @@ struct Light {
 
 struct Camera {
   Vec3d position{0, 0, 5}, look_at{0, 0, 0}, up{0, 1, 0};
-  double field_of_view = 40;  ///< full vertical angle, degrees, (0, 180)
+  double field_of_view = 40;                    ///< full vertical angle, degrees, (0, 180)
+  std::optional<double> orthographic_height{};  ///< mm: parallel rays in place of field_of_view
+  std::array<double, 2> shift{0, 0};            ///< right and up, in widths and heights of the image
+  double aperture = 0;                          ///< diameter of a thin lens, mm; 0: a pinhole
+  std::optional<double> focus_distance{};       ///< along the view axis, mm; none: that of look_at
+  int blades = 0;                               ///< iris of the lens; 0: round
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 

@@ -115,24 +115,34 @@ class LightTranslator {
 void add_camera(const GltfModel& gltf, std::size_t node, const Transform& to_world, AssetScene& scene) {
   const std::uint32_t index = gltf.nodes[node].camera;
   if (index == kNoRecord) return;
-  const GltfRecord camera = gltf.record("cameras", index), perspective = camera.record("perspective");
+  const GltfRecord camera = gltf.record("cameras", index), perspective = camera.record("perspective"),
+                   orthographic = camera.record("orthographic");
+  const bool is_parallel = camera.text("type") == "orthographic";
   const std::string own_name = camera.text("name");
   const std::string label = label_of("cameras", own_name.empty() ? gltf.nodes[node].name : own_name, index);
-  const double view = perspective.number("yfov", 0) * kDegrees;
+  const double view = perspective.number("yfov", 0) * kDegrees,
+               height = 2 * std::abs(orthographic.number("ymag", 0));
   const Vec3d up = normalized(to_world.y);
   if (!scene.camera.is_null())
     scene.not_carried.push_back(label + ": ignored, the scene already has one");
-  else if (camera.text("type") != "perspective")
-    scene.not_carried.push_back(label + ": ignored, it is orthographic");
-  else if (!(view > 0 && view < 180) || length(cross(forward(to_world), up)) < 1e-6)
-    scene.not_carried.push_back(
-        label + fmt::format(": ignored, its angle of {:.4g} degrees or its node is invalid", view));
+  else if (!(is_parallel ? std::isfinite(height) && height > 0 : view > 0 && view < 180) ||
+           length(cross(forward(to_world), up)) < 1e-6)
+    scene.not_carried.push_back(label + fmt::format(": ignored, its {} or its node is invalid",
+                                                    is_parallel
+                                                        ? fmt::format("height of {:.4g} m", height)
+                                                        : fmt::format("angle of {:.4g} degrees", view)));
   else {
     const double distance = std::max(length(scene.center - to_world.translation), scene.radius);
     scene.camera = {{"position", triple_json(to_world.translation)},
                     {"look_at", triple_json(to_world.translation + forward(to_world) * distance)},
-                    {"up", triple_json(up)},
-                    {"field_of_view", view}};
+                    {"up", triple_json(up)}};
+    if (is_parallel) {
+      scene.camera["orthographic_height"] = height;
+      scene.film["resolution"] = picture_size(2 * std::abs(orthographic.number("xmag", 0)) / height);
+      scene.translated.push_back(fmt::format("{} -> camera, orthographic, {:.4g} m high", label, height));
+      return;
+    }
+    scene.camera["field_of_view"] = view;
     scene.film["resolution"] = picture_size(perspective.number("aspectRatio", 0));
     scene.translated.push_back(
         fmt::format("{} -> camera, field of view {:.4g} degrees (vertical)", label, view));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/builtin_shapes.h"
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 
@@ -56,11 +56,17 @@ class Icosphere {
   }
 
   void cut() {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    struct Middle {
+      std::uint32_t other, vertex;
+    };
+    std::vector<std::vector<Middle>> middles(vertices.size());  // by lower vertex of an edge
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [at, added] = middles.try_emplace(std::minmax(a, b), std::uint32_t(vertices.size()));
-      if (added) vertices.push_back(normalized(vertices[a] + vertices[b]));
-      return at->second;
+      std::vector<Middle>& known = middles[std::min(a, b)];
+      const auto at = std::ranges::find(known, std::max(a, b), &Middle::other);
+      if (at != known.end()) return at->vertex;
+      known.push_back({std::max(a, b), std::uint32_t(vertices.size())});
+      vertices.push_back(normalized(vertices[a] + vertices[b]));
+      return known.back().vertex;
     };
     std::vector<Triangle> finer;
     finer.reserve(4 * triangles.size());

@@ -68,13 +68,15 @@ bool look_alike(const Scene& scene, const World& world, std::size_t a, std::size
 class SeenSides {
  public:
   SeenSides(const Scene& scene, const World& world)
-      : world_(world), camera_(scene.camera.position), position_(into_world(world, camera_)) {}
+      : world_(world), camera_(scene.camera.position), position_(into_world(world, camera_)) {
+    if (scene.camera.orthographic_height) backwards_ = scene.camera.position - scene.camera.look_at;
+  }
 
   /// True unless one of the closed shapes hides both faces: the camera is behind its face, and outside.
   bool are_seen(const CoplanarFaces& faces) {
     for (std::size_t i = 0; i < 2; ++i) {
       const std::size_t mesh = faces.meshes[i];
-      const bool is_behind = dot(faces.normals[i], position_ - faces.point) <= 0;
+      const bool is_behind = dot(faces.normals[i], backwards_.value_or(position_ - faces.point)) <= 0;
       if (is_behind && world_.reports[mesh].open_edges == 0 && !is_around_camera(mesh)) return false;
     }
     return true;
@@ -90,7 +92,8 @@ class SeenSides {
   }
 
   const World& world_;
-  Vec3d camera_, position_;  // in the scene, and in the world
+  Vec3d camera_, position_;         // in the scene, and in the world
+  std::optional<Vec3d> backwards_;  // for parallel rays
   std::map<std::size_t, bool> around_camera_;
 };
 

@@ -2,6 +2,7 @@
 #include "input/overrides.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -243,6 +244,18 @@ void drop_replaced_surface(Node& shape) {
     for (const char* key : {"medium", "group"}) drop(key);
 }
 
+/// Keeps the later one of two keys for a property of the camera.
+void drop_replaced_lens(Node& camera) {
+  using Pair = std::array<std::string_view, 2>;
+  for (const Pair& keys : {Pair{"field_of_view", "orthographic_height"}, Pair{"aperture", "f_number"},
+                           Pair{"focus_distance", "focus_point"}}) {
+    const Node *first = find_member(camera, keys[0]), *second = find_member(camera, keys[1]);
+    if (first == nullptr || second == nullptr || first->override_index == second->override_index) continue;
+    const std::string_view earlier = first->override_index < second->override_index ? keys[0] : keys[1];
+    std::erase_if(camera.children, [&](const Node& child) { return child.key == earlier; });
+  }
+}
+
 }  // namespace
 
 void apply_overrides(Document& document) {
@@ -253,7 +266,10 @@ void apply_overrides(Document& document) {
   }
   check_new_media(document, names);
   for (Node& member : document.root.children)
-    if (member.key == "shapes") std::ranges::for_each(member.children, drop_replaced_surface);
+    if (member.key == "shapes")
+      std::ranges::for_each(member.children, drop_replaced_surface);
+    else if (member.key == "camera")
+      drop_replaced_lens(member);
 }
 
 }  // namespace opaline

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <numbers>
+
 #include "input/readers.h"
 #include "input/settings_table.h"
 
@@ -6,6 +9,42 @@ namespace opaline {
 namespace {
 
 constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
+constexpr double kFilmHeight = 24;  // mm, of f-numbers
+
+/// error if both are given
+void allow_one(const std::optional<Value>& a, const std::optional<Value>& b) {
+  if (a && b) b->fail_key("cannot stand beside '" + a->path() + "'", "one of the two");
+}
+
+void read_projection(const ObjectReader& reader, double mm_per_unit, Camera& camera) {
+  const auto angle = reader.find("field_of_view"), height = reader.find("orthographic_height");
+  allow_one(angle, height);
+  if (angle) camera.field_of_view = angle->number();
+  if (height) camera.orthographic_height = height->length(mm_per_unit);
+  if (const auto shift = reader.find("shift")) camera.shift = read_pair(*shift);
+}
+
+void read_lens(const ObjectReader& reader, double mm_per_unit, Camera& camera) {
+  const auto aperture = reader.find("aperture"), f_number = reader.find("f_number");
+  allow_one(aperture, f_number);
+  allow_one(reader.find("orthographic_height"), f_number);
+  if (aperture) camera.aperture = aperture->number() * mm_per_unit;
+  if (f_number)
+    camera.aperture =
+        kFilmHeight / 2 / std::tan(camera.field_of_view * std::numbers::pi / 360) / f_number->number();
+  const auto distance = reader.find("focus_distance"), point = reader.find("focus_point");
+  allow_one(distance, point);
+  if (distance) camera.focus_distance = distance->length(mm_per_unit);
+  if (point) {
+    camera.focus_distance =
+        dot(point->point(mm_per_unit) - camera.position, normalized(camera.look_at - camera.position));
+    if (!(*camera.focus_distance > 0)) point->fail("lies behind the camera", "a point in front of it");
+  }
+  if (const auto blades = reader.find("blades")) {
+    camera.blades = int(blades->whole_number());
+    if (camera.blades == 1 || camera.blades == 2) blades->fail("forms no iris", "0 or at least 3");
+  }
+}
 
 /// Cropped images have no size limit.
 void check_pixels(const Film& film, const Value& value) {
@@ -18,6 +57,11 @@ void check_pixels(const Film& film, const Value& value) {
 
 }  // namespace
 
+std::array<double, 2> read_pair(const Value& value) {
+  const std::vector<Value> numbers = value.list(2, "a list of 2 numbers");
+  return {numbers[0].number(), numbers[1].number()};
+}
+
 Camera read_camera(const std::optional<Value>& value, double mm_per_unit) {
   Camera camera;
   camera.position *= mm_per_unit;
@@ -28,7 +72,7 @@ Camera read_camera(const std::optional<Value>& value, double mm_per_unit) {
   if (position) camera.position = position->point(mm_per_unit);
   if (look_at) camera.look_at = look_at->point(mm_per_unit);
   if (up) camera.up = up->triple();
-  if (const auto field_of_view = reader.find("field_of_view")) camera.field_of_view = field_of_view->number();
+  read_projection(reader, mm_per_unit, camera);
   const Vec3d view = normalized(camera.look_at - camera.position);
   if (view == Vec3d{}) {
     if (position && (!look_at || position->node().override_index > look_at->node().override_index))
@@ -39,6 +83,7 @@ Camera read_camera(const std::optional<Value>& value, double mm_per_unit) {
     (up ? *up : *value)
         .fail("leaves the camera roll undefined: 'up' is parallel to the view direction or zero",
               "'up' not parallel to the line from 'position' to 'look_at'");
+  read_lens(reader, mm_per_unit, camera);
   return camera;
 }
 

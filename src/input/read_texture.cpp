@@ -17,11 +17,6 @@ bool is_texture(const Value& value) {
 /// Channels of a texel used by a value.
 enum class TexturePart { color, triple, number };
 
-std::array<double, 2> read_pair(const Value& value) {
-  const std::vector<Value> numbers = value.list(2, "a list of 2 numbers");
-  return {numbers[0].number(), numbers[1].number()};
-}
-
 ColorSpace space_of(const ObjectReader& reader, const std::string& path, TexturePart part) {
   ColorSpace space = ColorSpace::automatic;
   if (const auto declared = reader.find("color_space")) space = static_cast<ColorSpace>(declared->choice());

@@ -2,6 +2,7 @@
 // Conversion of checked values to the records of a Scene, one reader per section.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,6 +19,9 @@ struct ShapeContext {
   const std::vector<Medium>* media = nullptr;
   std::map<std::string, std::size_t> group_media;  ///< filled while reading
 };
+
+/// Reads a list of two numbers.
+std::array<double, 2> read_pair(const Value& value);
 
 /// Reads a number, or a texture with the number 1. A file with equal texels becomes a constant.
 void read_textured(const Value& value, double& number, std::optional<Texture>& texture);

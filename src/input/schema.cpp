@@ -196,6 +196,21 @@ std::vector<KeyInfo> camera_rows() {
           "up direction of the image; not parallel to the view direction"),
       row("camera", "field_of_view", number, "degrees", {0, 180, true, true}, "40",
           "full vertical angle of view"),
+      row("camera", "orthographic_height", length, "", kFiniteNumber, "none",
+          "parallel projection of this height, in place of `field_of_view`"),
+      row("camera", "shift", list, "", {-10, 10}, "[0, 0]",
+          "moves the view to the right and up, in widths and heights of the image; vertical lines stay "
+          "parallel"),
+      row("camera", "aperture", number, "scene units", kNonNegative, "0",
+          "depth of field: diameter of the lens; use several `samples_per_pixel`"),
+      row("camera", "f_number", number, "", {0, 1e30, true}, "none",
+          "the same in place of `aperture`, for a film of 36 x 24 mm and lengths in true size"),
+      row("camera", "focus_distance", length, "", kFiniteNumber, "that of `look_at`",
+          "distance of the plane in focus"),
+      row("camera", "focus_point", point, "", kFiniteNumber, "none",
+          "point of the plane in focus, in place of `focus_distance`"),
+      row("camera", "blades", whole_number, "", {0, 100}, "0",
+          "blades of the iris, for the shape of blurred highlights; 0: round"),
   };
 }
 

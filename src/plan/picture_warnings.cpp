@@ -11,6 +11,7 @@
 
 #include "diffusion/diffuse_profile.h"
 #include "lights/light.h"
+#include "render/camera_rays.h"
 #include "scene/scene_properties.h"
 #include "scene/source_place.h"
 #include "values/override_key.h"
@@ -121,37 +122,29 @@ std::string backs_are_seen(const Scene& scene, const World& world, const Image& 
   return "the camera sees the back side of a translucent surface: it is inside the body; move the camera";
 }
 
-/// Pixel of a direction, in the full image. towards: in front of the camera
-std::string pixel_text(const Scene& scene, const Vec3d& towards) {
-  const Camera& camera = scene.camera;
-  const Vec3d forward = normalized(camera.look_at - camera.position),
-              right = normalized(cross(forward, camera.up)), up = cross(right, forward);
-  const auto [width, height] = scene.film.resolution;
-  const double scale =
-      height / 2. / (std::tan(camera.field_of_view * std::numbers::pi / 360) * dot(towards, forward));
-  return fmt::format("{:.0f},{:.0f} of {} x {}", width / 2. + scale * dot(towards, right),
-                     height / 2. - scale * dot(towards, up), width, height);
-}
-
 std::string nothing_in_view(const Scene& scene, const World& world) {
   const Bounds box = box_of(world);
   const Camera& camera = scene.camera;
   const Vec3d middle = .5 * (box.low + box.high), towards = middle - camera.position;
   const double distance = length(towards), radius = world.diagonal * world.unit / 2;
   const double cosine = dot(normalized(towards), normalized(camera.look_at - camera.position));
+  const CameraRays::FilmPlace seen =
+      CameraRays(camera, scene.film, world).film_place(into_world(world, middle));
+  const auto [width, height] = scene.film.resolution;
+  const bool is_in_view = seen.depth > 0 && seen.x >= 0 && seen.x <= width && seen.y >= 0 && seen.y <= height;
   const double pixels =
-      radius / distance / std::tan(camera.field_of_view * std::numbers::pi / 360) * scene.film.resolution[1];
+      2 * radius / world.unit / pixel_width(camera, scene.film, world).at(distance / world.unit);
   const double degrees = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi;
   std::string where = fmt::format("{:.0f} degrees from the view direction", degrees);
   if (scene.film.crop && degrees < 90)
-    where = "around the pixel " + pixel_text(scene, towards);
+    where = fmt::format("around the pixel {:.0f},{:.0f} of {} x {}", seen.x, seen.y, width, height);
   else if (distance <= radius)
     where = "around the camera";
   else if (degrees > 90)
     where = "behind the camera";
   else if (pixels < 2)
     where = fmt::format("so far away that together they are {:.2g} pixels wide", pixels);
-  else if (degrees < camera.field_of_view / 2)
+  else if (is_in_view)
     where = "in the view, but possibly behind a light or thinner than a pixel";
   const std::string look = "--set camera.look_at=" + point_text(middle, scene.mm_per_unit);
   std::string advice = look + " centres them";
@@ -162,8 +155,11 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
     const Vec3d back = distance > 0 ? normalized(towards) : normalized(camera.look_at - camera.position);
     advice = fmt::format("{} --set camera.position={} views them from outside", look,
                          point_text(middle - back * far, scene.mm_per_unit));
-  } else if (degrees < camera.field_of_view / 2 && pixels >= 2) {
+  } else if (is_in_view && pixels >= 2) {
     advice = "move the light, set \"visible\": false for it, or choose a higher --resolution";
+  } else if (pixels < 2 && camera.orthographic_height) {
+    advice = fmt::format("{} --set camera.orthographic_height={:.4g} shows them", look,
+                         2 * radius / scene.mm_per_unit);
   } else if (distance > radius && degrees <= 90 && pixels < 2) {
     const double near = radius / std::sin(camera.field_of_view * std::numbers::pi / 360);
     advice = fmt::format("{} --set camera.position={} shows them", look,

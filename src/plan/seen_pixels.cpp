@@ -38,13 +38,14 @@ class SeenCells {
         across_(double(columns_) / (part.x1 - part.x0)),
         down_(double(rows_) / (part.y1 - part.y0)) {}
 
-  CellBox around(const CameraRays::FilmPlace& place) const {
+  /// blur: radius, pixels
+  CellBox around(const CameraRays::FilmPlace& place, double blur) const {
     // Truncates a value >= 0; without SSE 4.1, std::floor is a function call.
     const auto cell = [](double at, int cells) {
       return short(short(std::clamp(at + 1, 0.0, double(cells + 1))) - 1);
     };
     const double x = (place.x - part_.x0) * across_, y = (place.y - part_.y0) * down_;
-    const double beside = kApart * across_, below = kApart * down_;
+    const double beside = (kApart + blur) * across_, below = (kApart + blur) * down_;
     return CellBox{cell(x - beside, columns_), short(-cell(x + beside, columns_)), cell(y - below, rows_),
                    short(-cell(y + below, rows_))};
   }
@@ -85,7 +86,7 @@ bool add_light(const Light& light, const CameraRays& rays, SeenCells& cells) {
     const auto side = [&](int axis) { return corner >> axis & 1 ? lamp->radius : -lamp->radius; };
     const CameraRays::FilmPlace place = rays.film_place(lamp->center + Vec3d{side(0), side(1), side(2)});
     if (!(place.depth > 0)) return false;
-    around = around_both(around, cells.around(place));
+    around = around_both(around, cells.around(place, rays.blur_radius(place.depth)));
   }
   cells.add(around);
   return true;
@@ -106,7 +107,7 @@ std::size_t seen_pixels(const Scene& scene, std::span<const Light> lights, const
     for (const Vec3d& position : mesh.positions) {
       const CameraRays::FilmPlace place = rays.film_place(position);
       if (!(place.depth > 0)) return all;
-      around.push_back(cells.around(place));
+      around.push_back(cells.around(place, rays.blur_radius(place.depth)));
     }
     for (const auto& [a, b, c] : mesh.triangles)
       cells.add(around_both(around_both(around[a], around[b]), around[c]));

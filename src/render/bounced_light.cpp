@@ -116,12 +116,12 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
   std::vector<std::uint64_t> keys;
   for (const std::uint32_t place : places) {
     const int row = int(place) / lattice.columns, column = int(place) % lattice.columns;
-    rays.push_back({camera_.ray((column - kAround) * lattice.step, (row - kAround) * lattice.step, 0), {}});
+    rays.push_back(
+        {camera_.middle_ray((column - kAround) * lattice.step, (row - kAround) * lattice.step), {}});
     keys.push_back(first_key + place * kLattices + lattice_index);
   }
   input.rays.intersect(rays);
-  // Spacing at depth 1.
-  const double apart = lattice.step * pixel_width(input.scene.camera, input.scene.film);
+  const PixelWidth pixel = pixel_width(input.scene.camera, input.scene.film, input.world);
   HeldView* const view = input.view;
   const std::size_t first_chunk = chunks_;
   chunks_ += chunk_count(rays.size(), kPlacesAtOnce);
@@ -150,7 +150,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
                         });
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
         const std::size_t k = begin + hits.rays[i], place = places[k];
-        const float spacing = float(apart * double(rays[k].ray.far));
+        const auto spacing = float(lattice.step * pixel.at(double(rays[k].ray.far)));
         lattice.places.set(place, hits.points[i], boundary.number(), spacing);
         lattice.irradiance[place] = irradiance[i];
         lattice.further[place] = further[i];

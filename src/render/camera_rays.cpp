@@ -10,6 +10,8 @@
 namespace opaline {
 namespace {
 
+constexpr std::uint64_t kLensSeed = 0x6c656e73;
+
 // The inverse of the filter's cumulative distribution along one axis, u in [0, 1).
 double filter_place(PixelFilter filter, double u) {
   if (filter == PixelFilter::box) return u - 0.5;
@@ -18,39 +20,92 @@ double filter_place(PixelFilter filter, double u) {
   return kSigma * std::numbers::sqrt2 * boost::math::erf_inv(edge * (2 * u - 1));
 }
 
+// Digits of i in this base, mirrored at the point.
+double radical_inverse(std::uint64_t i, std::uint64_t base) {
+  double place = 1, sum = 0;
+  for (; i > 0; i /= base) sum += (place /= double(base)) * double(i % base);
+  return sum;
+}
+
+double fraction(double value) {
+  return value - std::floor(value);
+}
+
 }  // namespace
 
-double pixel_width(const Camera& camera, const Film& film) {
-  return 2 * std::tan(camera.field_of_view * std::numbers::pi / 360) / film.resolution[1];
+PixelWidth pixel_width(const Camera& camera, const Film& film, const World& world) {
+  if (camera.orthographic_height) return {*camera.orthographic_height / world.unit / film.resolution[1], 0};
+  return {0, 2 * std::tan(camera.field_of_view * std::numbers::pi / 360) / film.resolution[1]};
 }
 
 CameraRays::CameraRays(const Camera& camera, const Film& film, const World& world)
     : position_(into_world(world, camera.position)),
       forward_(normalized(camera.look_at - camera.position)),
-      center_x_(0.5 * film.resolution[0]),
-      center_y_(0.5 * film.resolution[1]) {
-  const double pixel = pixel_width(camera, film);
-  const Vec3d right = normalized(cross(forward_, camera.up));
+      center_x_((0.5 - camera.shift[0]) * film.resolution[0]),
+      center_y_((0.5 + camera.shift[1]) * film.resolution[1]),
+      width_(pixel_width(camera, film, world)),
+      is_parallel_(camera.orthographic_height.has_value()),
+      row_pixels_(std::uint64_t(film.resolution[0])),
+      lens_radius_(camera.aperture / 2 / world.unit),
+      per_focus_distance_(world.unit /
+                          camera.focus_distance.value_or(length(camera.look_at - camera.position))),
+      blades_(camera.blades) {
+  const double pixel = width_.at(1);
+  const Vec3d right = normalized(cross(forward_, camera.up)), down = cross(forward_, right);
   right_ = right * pixel;
-  down_ = cross(forward_, right) * pixel;
+  down_ = down * pixel;
   across_ = right / pixel;
-  below_ = cross(forward_, right) / pixel;
+  below_ = down / pixel;
+  lens_right_ = right * lens_radius_;
+  lens_down_ = down * lens_radius_;
   for (int i = 0; i < film.samples_per_pixel; ++i) {
     const auto [u, v] = r2_point(std::uint64_t(i), {0.5, 0.5});
     places_.push_back({filter_place(film.filter, u), filter_place(film.filter, v)});
   }
 }
 
+Ray CameraRays::ray_through(double across, double below) const {
+  const Vec3d film = right_ * across + down_ * below;
+  if (is_parallel_) return {Vec3f(position_ + film), Vec3f(forward_)};
+  return {Vec3f(position_), Vec3f(forward_ + film)};
+}
+
+// In the unit disc, or the polygon of the blades inside it. Radical inverses are independent of the lattice of
+// the pixel's positions; each pixel rotates them.
+CameraRays::Place CameraRays::lens_place(int x, int y, int sample) const {
+  const std::uint64_t bits = hash_bits(kLensSeed, std::uint64_t(y) * row_pixels_ + std::uint64_t(x));
+  const auto i = std::uint64_t(sample);
+  const double u = fraction(radical_inverse(i, 2) + double(bits >> 32) * 0x1p-32),
+               v = fraction(radical_inverse(i, 3) + double(bits & 0xffffffff) * 0x1p-32);
+  const double radius = std::sqrt(u), turn = 2 * std::numbers::pi;
+  if (blades_ == 0) return {radius * std::cos(turn * v), radius * std::sin(turn * v)};
+  const double side = std::floor(v * blades_), along = v * blades_ - side, corner = turn / blades_;
+  const double a = corner * side, b = corner * (side + 1);
+  return {radius * ((1 - along) * std::sin(a) + along * std::sin(b)),
+          radius * ((along - 1) * std::cos(a) - along * std::cos(b))};
+}
+
 Ray CameraRays::ray(int x, int y, int sample) const {
   const Place& place = places_[std::size_t(sample)];
-  const double across = x + 0.5 + place.x - center_x_, below = y + 0.5 + place.y - center_y_;
-  return {Vec3f(position_), Vec3f(forward_ + right_ * across + down_ * below)};
+  const Ray middle = ray_through(x + 0.5 + place.x - center_x_, y + 0.5 + place.y - center_y_);
+  if (lens_radius_ == 0) return middle;
+  const auto [right, down] = lens_place(x, y, sample);
+  const Vec3d lens = lens_right_ * right + lens_down_ * down;
+  return {Vec3f(Vec3d(middle.origin) + lens), Vec3f(Vec3d(middle.direction) - lens * per_focus_distance_)};
+}
+
+Ray CameraRays::middle_ray(int x, int y) const {
+  return ray_through(x + 0.5 - center_x_, y + 0.5 - center_y_);
 }
 
 CameraRays::FilmPlace CameraRays::film_place(const Vec3d& point) const {
   const Vec3d towards = point - position_;
-  const double depth = dot(towards, forward_), per_depth = 1 / depth;
+  const double depth = dot(towards, forward_), per_depth = is_parallel_ ? 1 : 1 / depth;
   return {center_x_ + dot(towards, across_) * per_depth, center_y_ + dot(towards, below_) * per_depth, depth};
+}
+
+double CameraRays::blur_radius(double depth) const {
+  return lens_radius_ == 0 ? 0 : lens_radius_ * std::abs(1 - depth * per_focus_distance_) / width_.at(depth);
 }
 
 }  // namespace opaline

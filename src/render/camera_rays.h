@@ -2,6 +2,7 @@
 // From pixels to rays.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "geometry/ray_scene.h"
@@ -9,33 +10,51 @@
 
 namespace opaline {
 
-/// Width of a pixel at depth 1.
-double pixel_width(const Camera& camera, const Film& film);
+/// Width of a pixel by depth, world units.
+struct PixelWidth {
+  double at_camera = 0, per_depth = 0;
+  double at(double depth) const { return at_camera + per_depth * depth; }
+};
+PixelWidth pixel_width(const Camera& camera, const Film& film, const World& world);
 
 /// Rays through the film. Directions have length 1 along the view axis, so a ray's time is the depth Z. All
 /// pixels share one pattern of sub-pixel positions, sampled from the reconstruction filter; a single sample
-/// is at the centre.
+/// is at the centre. Positions on a lens differ from pixel to pixel.
 class CameraRays {
  public:
   CameraRays(const Camera& camera, const Film& film, const World& world);
 
   /// x, y: pixel in the full image; sample in [0, samples_per_pixel).
   Ray ray(int x, int y, int sample) const;
+  /// From the middle of the lens through the middle of a pixel.
+  Ray middle_ray(int x, int y) const;
 
-  /// Projection of a world point: pixels from the top left of the image, and the depth Z. Behind the camera
-  /// (Z <= 0), x and y are meaningless.
+  /// Projection of a world point from the middle of the lens: pixels from the top left of the image, and the
+  /// depth Z. Behind the camera (Z <= 0), x and y are meaningless.
   struct FilmPlace {
     double x, y, depth;
   };
   FilmPlace film_place(const Vec3d& point) const;
 
+  /// Radius of the image of a point at this depth, pixels: 0 in focus.
+  double blur_radius(double depth) const;
+
  private:
-  Vec3d position_, forward_, right_, down_;  // right_ and down_: one pixel on the film plane at depth 1
-  Vec3d across_, below_;                     // dot products with them, over the depth, are pixels
-  double center_x_, center_y_;
   struct Place {
     double x, y;
   };
+  Ray ray_through(double across, double below) const;
+  Place lens_place(int x, int y, int sample) const;
+
+  Vec3d position_, forward_, right_, down_;  // right_ and down_: one pixel on the film plane at depth 1
+  Vec3d across_, below_;                     // dot products with them, over the depth, are pixels
+  double center_x_, center_y_;
+  PixelWidth width_;
+  bool is_parallel_;
+  std::uint64_t row_pixels_;
+  Vec3d lens_right_, lens_down_;  // radius of the lens
+  double lens_radius_, per_focus_distance_;
+  int blades_;
   std::vector<Place> places_;  // relative to the pixel's centre
 };
 

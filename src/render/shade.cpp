@@ -41,9 +41,11 @@ constexpr float kGatheringSpread = 0.25f;
 
 constexpr std::uint64_t kGatheringSeed = 1, kFurtherSeed = 2;
 
-// Full angle of a camera ray.
-float camera_ray_spread(const Scene& scene) {
-  return float(pixel_width(scene.camera, scene.film) / std::sqrt(scene.film.samples_per_pixel));
+// Width of a camera ray: several share a pixel.
+PixelWidth camera_ray_width(const RenderInput& input) {
+  const PixelWidth pixel = pixel_width(input.scene.camera, input.scene.film, input.world);
+  const double rays = std::sqrt(input.scene.film.samples_per_pixel);
+  return {pixel.at_camera / rays, pixel.per_depth / rays};
 }
 
 SurfacePoint point_of(const Hit& hit, const RayScene& rays) {
@@ -64,7 +66,7 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
     : input_(input),
       lights_(recentred_lights(input.scene, input.world)),
       textures_(input.scene, input.world),
-      pixel_spread_(camera_ray_spread(input.scene)),
+      ray_width_(camera_ray_width(input)),
       fields_(make_fields(input, textures_, sources)) {
   if (input.view != nullptr) {
     std::vector<OuterBoundary> boundaries;
@@ -204,8 +206,13 @@ void Shader::write_further(const SurfaceHits& hits, std::span<const RgbF> bounce
 std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedRay> rays,
                                                          std::span<const std::uint64_t> keys) const {
   std::vector<PixelSample> lights(rays.size());
-  std::vector<SurfaceHits> hits = collect(
-      {.rays = rays, .keys = keys, .out = lights, .spread = pixel_spread_, .is_of_camera = true}, nullptr);
+  std::vector<SurfaceHits> hits = collect({.rays = rays,
+                                           .keys = keys,
+                                           .out = lights,
+                                           .spread = float(ray_width_.per_depth),
+                                           .width = float(ray_width_.at_camera),
+                                           .is_of_camera = true},
+                                          nullptr);
   std::vector<SeenSurfaces> seen;
   for (std::size_t f = 0; f < hits.size(); ++f)
     if (!hits[f].points.empty() &&
@@ -284,7 +291,7 @@ void Shader::add_textures(const RayBatch& batch, std::size_t ray, bool from_behi
 }
 
 float Shader::width_at(const RayBatch& batch, std::size_t ray) const {
-  return (batch.widths.empty() ? 0 : batch.widths[ray]) + batch.spread * batch.rays[ray].ray.far;
+  return (batch.widths.empty() ? batch.width : batch.widths[ray]) + batch.spread * batch.rays[ray].ray.far;
 }
 
 Appearance Shader::appearance_of(const SurfaceHits& hits, std::size_t i) const {

@@ -9,6 +9,7 @@
 #include "irradiance/irradiance.h"
 #include "lights/light.h"
 #include "render/appearance.h"
+#include "render/camera_rays.h"
 #include "render/fields/make_fields.h"
 #include "render/layers.h"
 #include "render/render.h"
@@ -30,8 +31,8 @@ class Shader {
     std::span<const std::uint64_t> keys;  ///< choose the random numbers of the rays' light samples
     std::span<PixelSample> out;           ///< one per ray
     int light_samples = 1;                ///< per hit
-    /// Cone widths of the rays, for texture filtering: at the origins (empty: 0), and per length.
-    float spread = 0;
+    /// Cone widths of the rays, for texture filtering: per length, and at the origins (empty: `width`).
+    float spread = 0, width = 0;
     std::span<const float> widths = {};
     int mirrors = 0;  ///< number of specular reflections before
     Specular specular = Specular::traced;
@@ -44,7 +45,8 @@ class Shader {
             .keys = keys,
             .out = out,
             .light_samples = light_samples_,
-            .spread = pixel_spread_,
+            .spread = float(ray_width_.per_depth),
+            .width = float(ray_width_.at_camera),
             .is_of_camera = true};
   }
 
@@ -141,7 +143,7 @@ class Shader {
   std::vector<Light> unit_lights_;       // all with unit emission, if reflections are cacheable
   std::vector<Appearance> appearances_;  // one per mesh
   SurfaceTextures textures_;
-  float pixel_spread_ = 0;  // pixel spread of camera rays
+  PixelWidth ray_width_;  // for camera rays
   Fields fields_;
   int light_samples_ = 1;  // a camera ray
   const BouncedLight* bounced_ = nullptr;

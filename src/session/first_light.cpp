@@ -47,8 +47,15 @@ struct CoarseGrid {
 
 Scene coarse_scene(Scene scene, const CoarseGrid& grid) {
   constexpr double kHalf = std::numbers::pi / 360;  // degrees of a full angle to radians of its half
-  double& angle = scene.camera.field_of_view;
-  angle = std::atan(std::tan(angle * kHalf) * grid.stride * grid.coarse[1] / grid.resolution[1]) / kHalf;
+  Camera& camera = scene.camera;
+  std::array<double, 2> wider;
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    wider[axis] = double(grid.stride) * grid.coarse[axis] / grid.resolution[axis];
+  double& angle = camera.field_of_view;
+  angle = std::atan(std::tan(angle * kHalf) * wider[1]) / kHalf;
+  if (camera.orthographic_height) *camera.orthographic_height *= wider[1];
+  for (std::size_t axis = 0; axis < 2; ++axis) camera.shift[axis] /= wider[axis];
+  camera.aperture = 0;
   if (scene.film.crop) scene.film.crop = grid.around(rendered_part(scene.film));
   scene.film.resolution = grid.coarse;
   scene.film.samples_per_pixel = 1;

@@ -129,8 +129,10 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
 
 StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes) {
   const Camera& camera = input.scene.camera;
-  KeyBuilder key("view", 2);
+  KeyBuilder key("view", 3);
   key.add(camera.position).add(camera.look_at).add(camera.up).add(camera.field_of_view);
+  key.add(camera.orthographic_height.value_or(0)).add(camera.shift);
+  key.add(camera.aperture).add(camera.focus_distance.value_or(0)).add(camera.blades);
   key.add(input.world.origin).add(input.world.unit);
   key.add(settings_in_key(KeyedStage::view, input.scene)).add(input.plan.rays);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);

@@ -73,12 +73,26 @@ TEST(GltfScenes, TheDefaultSceneIsShown) {
   EXPECT_TRUE(has(imported(asset).not_carried, "1 of its 2 scenes: uses scenes[1]"));
 }
 
-// Claim: a perspective camera looks along its node's -z, with its angle and the shape of its picture; further ones and
-// orthographic ones are said to be left out. Source: glTF 2.0, section 3.10. Fails if it looks along +z.
+// Claim: an orthographic camera has the height of twice its ymag, in metres, and the shape of its picture; without a height it is
+// said to be left out. Source: glTF 2.0, section 3.10.3. Fails if: xmag is the height.
+TEST(GltfScenes, OrthographicCamerasHaveTheirHeight) {
+  Asset asset = cube_asset();
+  asset.json["cameras"] = {
+      {{"type", "orthographic"}, {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"znear", 1}, {"zfar", 9}}}}};
+  asset.root(asset.node({{"camera", 0}, {"translation", {0, 0, 6}}}));
+  const Scene scene = scene_of(asset.glb(), "a.glb");
+  EXPECT_EQ(scene.camera.orthographic_height, 4000);
+  EXPECT_EQ(scene.film.resolution, (std::array<int, 2>{512, 256}));
+  asset.json["cameras"][0]["orthographic"]["ymag"] = 0;
+  EXPECT_TRUE(has(imported(asset).not_carried, "its height of 0 m"));
+}
+
+// Claim: a perspective camera looks along its node's -z, with its angle and the shape of its picture; further ones are
+// said to be left out. Source: glTF 2.0, section 3.10. Fails if it looks along +z.
 TEST(GltfScenes, CamerasLookAlongMinusZ) {
   Asset asset = cube_asset();
   asset.json["cameras"] = {
-      {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 1}, {"zfar", 9}}}},
+      {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 0}, {"znear", 1}, {"zfar", 9}}}},
       {{"type", "perspective"}, {"perspective", {{"yfov", .5}, {"aspectRatio", 2}, {"znear", .1}}}},
       {{"type", "perspective"}, {"perspective", {{"yfov", .7}, {"znear", .1}}}}};
   const double h = std::sqrt(.5);
@@ -93,7 +107,7 @@ TEST(GltfScenes, CamerasLookAlongMinusZ) {
   EXPECT_NEAR(scene.camera.field_of_view, .5 * 180 / std::numbers::pi, 1e-12);
   EXPECT_EQ(scene.film.resolution, (std::array<int, 2>{512, 256}));
   const std::vector<std::string> lines = imported(asset).not_carried;
-  EXPECT_TRUE(has(lines, "cameras[0]: ignored, it is orthographic"));
+  EXPECT_TRUE(has(lines, "cameras[0]: ignored, its height of 0 m or its node is invalid"));
   EXPECT_TRUE(has(lines, "cameras[2]: ignored, the scene already has one"));
 }
 

@@ -28,6 +28,27 @@ TEST(SceneValues, EmptySceneHasDefaults) {
   EXPECT_EQ(scene.file, "test.json");
 }
 
+// Claim: an f-number is the focal length of a film of 24 mm height over the diameter of the lens; a point of focus counts along the
+// view; lengths are scene units; a value of the command line replaces the other key of the file. By hand: 12 mm / tan(20 degrees) / 2.8 = 11.775 mm;
+// the point (3, 0, 1) is 4 units in front of a camera at z = 5 that looks along -z. Fails if: millimetres and units change places.
+TEST(SceneValues, Lenses) {
+  const auto camera = [](const std::string& inside, const std::vector<std::string>& overrides = {}) {
+    return parse(R"({"mm_per_unit": 10, "camera": {)" + inside + "}}", overrides).camera;
+  };
+  EXPECT_NEAR(camera(R"("f_number": 2.8)").aperture, 11.775, .001);
+  EXPECT_EQ(camera(R"("aperture": 3)").aperture, 30);
+  EXPECT_FALSE(camera("").focus_distance);
+  EXPECT_EQ(camera(R"("focus_distance": 7)").focus_distance, 70);
+  EXPECT_NEAR(*camera(R"("focus_point": [3, 0, 1])").focus_distance, 40, 1e-12);
+  EXPECT_EQ(camera(R"("orthographic_height": 2)").orthographic_height, 20);
+  const Camera replaced =
+      camera(R"("field_of_view": 30, "aperture": 1, "focus_distance": 2)",
+             {"camera.orthographic_height=4", "camera.aperture=2", "camera.focus_point=[0, 0, 0]"});
+  EXPECT_EQ(replaced.orthographic_height, 40);
+  EXPECT_EQ(replaced.aperture, 20);
+  EXPECT_EQ(replaced.focus_distance, 50);
+}
+
 // Claim: more than six built-in curved shapes are less fine, and all take at most 8 million triangles together, until each
 // has the fewest. Fails if each of 300 balls is as fine as a lone one (4.5 GB), or a seventh changes nothing.
 TEST(SceneValues, ManyBallsAreCoarserThanFew) {

@@ -147,8 +147,8 @@ std::vector<double> expected_points(const PrecomputeInput& input) {
   std::vector<TracedRay> rays;
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; ++column)
-      rays.push_back({camera.ray((2 * column + 1) * film.resolution[0] / (2 * kColumns),
-                                 (2 * row + 1) * film.resolution[1] / (2 * kRows), 0),
+      rays.push_back({camera.middle_ray((2 * column + 1) * film.resolution[0] / (2 * kColumns),
+                                        (2 * row + 1) * film.resolution[1] / (2 * kRows)),
                       {}});
   input.rays.intersect(rays);
   const double each =

@@ -20,6 +20,8 @@ export function cameraOf(scene) {
     look_at: given.look_at || [0, 0, 0],
     up: given.up || [0, 1, 0],
     field_of_view: given.field_of_view || 40,
+    orthographic_height: given.orthographic_height,
+    shift: given.shift || [0, 0],
   };
 }
 
@@ -57,7 +59,7 @@ export function orbit(camera, around, over) {
 // Fractions of the image height.
 export function pan(camera, x, y) {
   const {right, up, distance} = basis(camera);
-  const size = 2 * distance * Math.tan(camera.field_of_view * Math.PI / 360);
+  const size = heightAt(camera, distance);
   const by = add(scale(right, -x * size), scale(up, y * size));
   return {...camera, position: add(camera.position, by), look_at: add(camera.look_at, by)};
 }
@@ -67,7 +69,8 @@ export function dolly(camera, factor) {
 }
 
 // Height of the image at a depth.
-export const heightAt = (camera, depth) => 2 * depth * Math.tan(camera.field_of_view * Math.PI / 360);
+export const heightAt = (camera, depth) =>
+  camera.orthographic_height || 2 * depth * Math.tan(camera.field_of_view * Math.PI / 360);
 
 // Projection of a point: x and y in [0, 1] of the full film, and its depth. Points behind the camera keep
 // their side.
@@ -75,5 +78,6 @@ export function project(camera, aspect, point) {
   const {forward, right, up, distance} = basis(camera);
   const to = sub(point, camera.position);
   const depth = dot(to, forward), size = heightAt(camera, Math.max(depth, distance * .05));
-  return {x: .5 + dot(to, right) / (size * aspect), y: .5 - dot(to, up) / size, depth};
+  const [across, above] = camera.shift;
+  return {x: .5 - across + dot(to, right) / (size * aspect), y: .5 + above - dot(to, up) / size, depth};
 }

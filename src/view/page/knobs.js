@@ -17,7 +17,9 @@ const kColours = ["color", "number_or_triple"];
 const kFuzz = ["fuzz_weight", "fuzz_color", "fuzz_roughness"];
 const kOptional = [...kFuzz, "base_color", "specular_anisotropy", "specular_rotation", "tint", "texture_mix", "thickness", "fit"];
 const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_weight", "specular_anisotropy", "specular_rotation", ...kFuzz];
-const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"]};
+const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"], shift: ["right", "up"]};
+const kEither = [["field_of_view", "orthographic_height"], ["aperture", "f_number"], ["focus_distance", "focus_point"]];
+const unusedOf = (camera) => kEither.map(([usual, other]) => other in (camera || {}) ? usual : other);
 const kWidestLinear = 1000, kDecade = 1;
 
 // Textures and spectra, shown as text.
@@ -79,7 +81,7 @@ export class Knobs {
     this.scene = scene;
     if (!this.rows) return;
     const media = scene.media || {}, lights = scene.lights || [], shapes = scene.shapes || [];
-    const shape = JSON.stringify([Object.entries(media).map(([name, m]) => [name, this.formOf(m), kOptional.filter((key) => key in m), objectsOf(m)]),
+    const shape = JSON.stringify([unusedOf(scene.camera), Object.entries(media).map(([name, m]) => [name, this.formOf(m), kOptional.filter((key) => key in m), objectsOf(m)]),
       lights.map((l) => [l.name, l.type, objectsOf(l)]), shapes.map((s) => [s.name, "medium" in s, kGloss.filter((key) => key in s), objectsOf(s)])]);
     if (shape !== this.shape) this.build(scene);
     this.shape = shape;
@@ -105,7 +107,7 @@ export class Knobs {
     (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`,
       [...("medium" in shape ? ["medium"] : ["reflectance", ...kGloss.filter((key) => key in shape)]), "normals"].map((key) =>
         this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))));
-    group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera));
+    group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera, unusedOf(scene.camera)));
     group("film", "Image", this.rowsOf("film", "film", (s) => s.film));
     group("settings", "Method", this.rowsOf("settings", "settings", (s) => s.settings, ["laboratory"]));
     group("laboratory", "Laboratory", this.rowsOf("settings.laboratory", "settings.laboratory", (s) => (s.settings || {}).laboratory));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Connects the server with the image, the knobs and the status lines.
 import {Ahead} from "./ahead.js";
-import {cameraOf, dolly, lookOf, orbit, pan, turnedLight} from "./camera.js";
+import {cameraOf, dolly, lookOf, orbit, pan, rounded, turnedLight} from "./camera.js";
 import {Connection, newStroke, pausedStroke} from "./connection.js";
 import {Knobs} from "./knobs.js";
 import {Overlay} from "./overlay.js";
@@ -127,6 +127,13 @@ function turn(change) {
   overlay.update();
 }
 
+// Parallel rays look nearer in a lower view.
+function approach(factor, stroke) {
+  const height = state.camera.orthographic_height;
+  if (height) set({"camera.orthographic_height": rounded(height * factor)}, stroke);
+  else turn((camera) => dolly(camera, factor));
+}
+
 // Rotates the environment together with distant lights. from: the lights before.
 function turnLights(from, angle, stroke) {
   const values = {};
@@ -149,7 +156,8 @@ function dragCamera(event) {
     if (event.altKey) return turnLights(lights, -kTurn * (now.clientX - start) / height, stroke);
     const x = (now.clientX - last[0]) / height, y = (now.clientY - last[1]) / height;
     last = [now.clientX, now.clientY];
-    turn((camera) => event.shiftKey ? pan(camera, x, y) : event.ctrlKey ? dolly(camera, Math.exp(2 * y)) : orbit(camera, -kTurn * x, -kTurn * y));
+    if (event.ctrlKey) return approach(Math.exp(2 * y), stroke);
+    turn((camera) => event.shiftKey ? pan(camera, x, y) : orbit(camera, -kTurn * x, -kTurn * y));
   };
   const end = () => {
     isDragging = false;
@@ -163,7 +171,7 @@ function dragCamera(event) {
 const keyStroke = pausedStroke();
 function wheelCamera(event) {
   event.preventDefault();
-  turn((camera) => dolly(camera, kKeyDolly ** Math.sign(event.deltaY)));
+  approach(kKeyDolly ** Math.sign(event.deltaY), keyStroke());
 }
 
 function keyCamera(event) {
@@ -172,7 +180,8 @@ function keyCamera(event) {
   if (!(x || y || nearer) || event.ctrlKey) return;
   event.preventDefault();
   if (event.altKey) return turnLights(state.scene.lights || [], -kKeyTurn * x, keyStroke());
-  turn((camera) => nearer ? dolly(camera, nearer) : event.shiftKey ? pan(camera, kKeyPan * x, kKeyPan * y) : orbit(camera, -kKeyTurn * x, -kKeyTurn * y));
+  if (nearer) return approach(nearer, keyStroke());
+  turn((camera) => event.shiftKey ? pan(camera, kKeyPan * x, kKeyPan * y) : orbit(camera, -kKeyTurn * x, -kKeyTurn * y));
 }
 
 function tell(text, isGood = true) {
