@@ -208,6 +208,8 @@ struct MeshFile {
   std::optional<bool> vertex_colors{};
   /// Without normals: edges with a larger angle are creases, degrees, [0, 180]; none: by the file.
   std::optional<double> crease_angle{};
+  int subdivide = 0;  ///< rounds of Loop subdivision, each with 4 times as many triangles; 0 to kMostRounds
+  static constexpr int kMostRounds = 6;
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
@@ -397,6 +399,7 @@ struct Film {
   ViewTransform view = ViewTransform::soft;                 ///< for PNG only
   FilmColorSpace color_space = FilmColorSpace::lin_rec709;  ///< for EXR only
   std::optional<int> wavelengths{};  ///< number of wavelengths; none: as few as the spectra allow
+  bool denoise = false;              ///< by Open Image Denoise
   friend bool operator==(const Film&, const Film&) = default;
 };
 

@@ -26,6 +26,7 @@ struct AssetScene {
   Json media = Json::object(), shapes = Json::array(), lights = Json::array(), camera, film = Json::object();
   Vec3d center;                  ///< center of the box around the shapes
   double radius = 1;             ///< distance from there to the farthest vertex
+  double extent = 0;             ///< largest side of the box
   double center_irradiance = 0;  ///< irradiance from its lights at the center, facing them
   bool is_one_mesh = false;      ///< true if its shapes are parts of one body
   bool has_vertex_colors = false;
@@ -73,12 +74,13 @@ void add_defaults(AssetScene& scene);
 /// Text of the scene file: indented, vectors on one line, unsupported statements in comments at its top.
 std::string scene_text(const AssetScene& scene, const std::string& asset);
 
-/// Sets the scene's center and radius. for_each_point(visit): calls visit for each vertex; called repeatedly.
+/// Sets the scene's center, radius and extent. for_each_point(visit): calls visit for each vertex; called repeatedly.
 template <class ForEachPoint>
 void enclose(AssetScene& scene, const ForEachPoint& for_each_point) {
   Vec3d low(1e300), high(-1e300);
   for_each_point([&](const Vec3d& p) { widen(low, high, p); });
   scene.center = low * .5 + high * .5;
+  scene.extent = max_component(high - low);
   double square = 0;
   for_each_point([&](const Vec3d& p) { square = std::max(square, dot(p - scene.center, p - scene.center)); });
   scene.radius = std::max(std::sqrt(square), 1e-12);

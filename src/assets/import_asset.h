@@ -19,6 +19,7 @@ struct AssetDefaults {
   bool camera = false, lights = false;  ///< false: the asset has its own
   Vec3d center{};                       ///< centre of the sphere around the asset
   double radius = 1;
+  double extent = 0;  ///< largest side of the box around it
 };
 
 struct ImportedAsset {

@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "assets/import_asset.h"
+#include "cli/asset_options.h"
 #include "cli/command_options.h"
 #include "cli/frames.h"
 #include "cli/help_texts.h"
@@ -52,12 +53,15 @@ std::vector<std::string> overrides_of(const Options& options) {
   if (!options.crop.empty()) add("film.crop", crop_json(options.crop));
   if (options.exposure) add("film.exposure", fmt::format("{}", *options.exposure));
   add("film.view", options.view);
+  if (options.denoise) add("film.denoise", "true");
   if (options.entry_samples) add("settings.entry_samples", std::to_string(*options.entry_samples));
   if (!options.until_error.empty())
     add("settings.until_error", fmt::format("{}", *share_of(options.until_error)));
   add("settings.method", options.method);
   add("settings.evaluator", options.evaluator);
   if (options.seed) add("settings.seed", std::to_string(*options.seed));
+  for (const std::string& medium : options.media)
+    for (std::string& text : medium_overrides(medium)) overrides.push_back(std::move(text));
   overrides.insert(overrides.end(), options.sets.begin(), options.sets.end());
   return overrides;
 }
@@ -67,7 +71,8 @@ Error usage_error(const std::string& message, const std::string& expected = {}, 
 }
 
 Error unknown_format(const std::string& path) {
-  return usage_error("unknown output format", "a name that ends in .exr or .png", "'" + path + "'");
+  return usage_error("unknown output format", "a name that ends in .exr or .png, or in .mp4 for frames",
+                     "'" + path + "'");
 }
 
 /// Canonical path of a file, existing or not.
@@ -76,6 +81,14 @@ std::string whole_path(const std::string& path) {
   const std::filesystem::path whole =
       std::filesystem::weakly_canonical(std::filesystem::absolute(path), unknown);
   return unknown ? path : whole.string();
+}
+
+void check_movie(const RenderArguments& render, const std::string& path, bool has_place) {
+  if (render.frames.empty())
+    throw usage_error("a movie requires several frames", "--frames FIRST-LAST", "'" + path + "'");
+  if (has_place) throw usage_error("a movie has all frames", "a name without ##", "'" + path + "'");
+  if (std::ranges::count(render.outputs, OutputFormat::mp4, output_format) > 1)
+    throw usage_error("more than one movie", "one output that ends in .mp4");
 }
 
 void check_outputs(const RenderArguments& render) {
@@ -89,6 +102,10 @@ void check_outputs(const RenderArguments& render) {
     if (!seen.insert(whole_path(path)).second)
       throw usage_error("two outputs have the same name '" + path + "'");
     const bool has_place = path.find("##") != std::string::npos;
+    if (output_format(path) == OutputFormat::mp4) {
+      check_movie(render, path, has_place);
+      continue;
+    }
     if (render.frames.size() > 1 && !has_place)
       throw usage_error(
           "all frames have the same output name '" + path + "'" +
@@ -111,7 +128,8 @@ void check_layers_have_a_file(const RenderArguments& render, const std::string& 
 CompareArguments checked(CompareArguments compare, const Options& options) {
   if (compare.reference.empty() == compare.halves.empty())
     throw usage_error("compare requires either a reference B or --halves D1 D2");
-  if (!compare.error_picture.empty() && output_format(compare.error_picture) == OutputFormat::unknown)
+  const OutputFormat format = output_format(compare.error_picture);
+  if (!compare.error_picture.empty() && format != OutputFormat::exr && format != OutputFormat::png)
     throw unknown_format(compare.error_picture);
   if (!std::isfinite(compare.exposure.value_or(0)))
     throw usage_error("--exposure", "a finite number", fmt::format("{}", *compare.exposure));
@@ -337,6 +355,8 @@ void add_commands(CLI::App& app, Parsed& parsed) {
   };
   Options& options = parsed.options;
   add_render_options(command("render", "render a scene to EXR and PNG files"), parsed.render, options);
+  add_turntable_options(command("turntable", "render a turn around a scene or asset, as frames or a movie"),
+                        parsed.render, options);
   add_view_options(command("view", "edit a scene in the browser, with a live preview"), parsed.view, options);
   add_precompute_options(command("precompute", "compute the stages of a scene and store them in a cache"),
                          parsed.precompute, options);
@@ -361,6 +381,9 @@ void add_commands(CLI::App& app, Parsed& parsed) {
 RenderArguments checked(RenderArguments render, const Options& options) {
   if (!options.layers.empty()) render.layers = *layers_of(options.layers);
   check_outputs(render);
+  if (render.frames_per_second &&
+      std::ranges::find(render.outputs, OutputFormat::mp4, output_format) == render.outputs.end())
+    throw usage_error("--fps has no effect without a movie", "-o FILE.mp4");
   check_layers_have_a_file(render, options.layers);
   if (!options.target_error.empty()) render.target_error = share_of(options.target_error);
   render.time_budget = options.time_budget;
@@ -378,6 +401,9 @@ Command command_of(const std::string& name, Parsed parsed) {
   };
   const auto with_overrides = [&](auto arguments) {
     arguments.overrides = overrides_of(options);
+    if (options.size)
+      arguments.overrides.insert(arguments.overrides.begin(),
+                                 size_override(arguments.scene, options.sets, *options.size));
     return with_log(std::move(arguments));
   };
   const auto with_frames = [&](auto arguments) {
@@ -395,7 +421,10 @@ Command command_of(const std::string& name, Parsed parsed) {
   if (name == "precompute") return with_frames(std::move(parsed.precompute));
   if (name == "info") return with_overrides(std::move(parsed.info));
   parsed.render.command_line = shell_quoted(parsed.program) + parsed.words;
-  return checked(with_frames(std::move(parsed.render)), options);
+  if (name == "turntable") parsed.render.frames = parse_frames("1-" + std::to_string(options.turn_frames));
+  RenderArguments render = checked(with_frames(std::move(parsed.render)), options);
+  if (name == "turntable") return TurntableArguments{render, render.log};
+  return render;
 }
 
 }  // namespace
@@ -404,6 +433,7 @@ OutputFormat output_format(const std::string& path) {
   const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
   return extension == ".exr"   ? OutputFormat::exr
          : extension == ".png" ? OutputFormat::png
+         : extension == ".mp4" ? OutputFormat::mp4
                                : OutputFormat::unknown;
 }
 

@@ -23,19 +23,26 @@ struct RenderArguments {
   std::string scene;
   /// For load_scene: the values of short options in a fixed order, then every --set in the given order.
   std::vector<std::string> overrides;
-  std::vector<std::string> outputs;        ///< at least one; .exr or .png, no two alike
+  std::vector<std::string> outputs;        ///< at least one; .exr or .png, or a .mp4 of frames, no two alike
   LayerChoice layers{false, {"diffuse"}};  ///< layers of the EXR files, beside R, G, B and A
   std::string samples_ply;                 ///< empty: none
   std::string resume;                      ///< sums of an earlier `direct` render, to continue; empty: none
   std::string cache;                       ///< folder of stage results; empty: none
   std::uint64_t cache_bytes = BlobCache::kDefaultBytes;
   std::vector<int> frames;  ///< empty: one image; otherwise output names contain ## for the number
-  int threads = 0;          ///< 0: one for each core
+  std::optional<int> frames_per_second;  ///< for a movie; none: 24
+  int threads = 0;                       ///< 0: one for each core
   bool timings_in_metadata = false;
   std::optional<double> target_error;  ///< chooses settings by error; relative, > 0
   std::optional<double> time_budget;   ///< chooses settings by CPU time of the whole process, s, > 0
   bool verify = false;                 ///< measures the error of the image
   bool gives_entry_samples = false, gives_until_error = false;  ///< the options, not --set
+  Log log;
+};
+
+/// Renders frames, as many as those of `render`, with the camera turned once around its look_at.
+struct TurntableArguments {
+  RenderArguments render;
   Log log;
 };
 
@@ -115,11 +122,11 @@ struct ShowText {
   std::string text;
 };
 
-using Command =
-    std::variant<ShowText, RenderArguments, InfoArguments, CompareArguments, BenchArguments, CacheArguments,
-                 PrecomputeArguments, ProfileArguments, ImportArguments, ViewArguments>;
+using Command = std::variant<ShowText, RenderArguments, TurntableArguments, InfoArguments, CompareArguments,
+                             BenchArguments, CacheArguments, PrecomputeArguments, ProfileArguments,
+                             ImportArguments, ViewArguments>;
 
-enum class OutputFormat { exr, png, unknown };
+enum class OutputFormat { exr, png, mp4, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case
 /// error Error{bad_input}: an unknown option, an invalid value, or an output other than EXR or PNG
 Command parse_arguments(int argc, const char* const* argv);

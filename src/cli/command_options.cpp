@@ -68,6 +68,39 @@ std::string_view key_of_option(std::string_view option) {
   return found == std::end(kKeyOptions) ? std::string_view() : found->key;
 }
 
+/// Options of commands writing images.
+void add_image_options(CLI::App& app, RenderArguments& render, Options& options, const char* outputs) {
+  add_repeatable(app, "-o,--output", render.outputs, outputs)->required()->type_name("FILE");
+  add_common_options(app, render.scene, options);
+  app.add_option("--layers", options.layers,
+                 "layers of the EXR besides R, G, B and A: diffuse (default), specular, albedo, N, P, Z, "
+                 "irradiance, error, variance (of direct); all (of these) or none; also light_groups (the "
+                 "contribution of each light), cryptomatte (mattes of objects and materials) and wavelengths "
+                 "(radiance at each wavelength of a scene with spectra)")
+      ->check(layers_check())
+      ->type_name("NAME,...");
+  CLI::Option* cache = app.add_option("--cache", render.cache,
+                                      "store samples, irradiance and octrees in this folder, and reuse the "
+                                      "entries with the same input")
+                           ->type_name("FOLDER");
+  add_size(app, "--cache-size", render.cache_bytes,
+           "maximum cache size, e.g. 20GB (default 8GB); evicts the least recently used entries")
+      ->needs(cache);
+  app.add_option("--fps", render.frames_per_second, "frames per second of a movie (default 24)")
+      ->transform(whole_number({1, 240}))
+      ->type_name("N");
+  add_threads(app, render.threads, "maximum number of threads (default: one per core)");
+  app.add_flag("--quiet", render.log.quiet, "print warnings and errors only");
+  app.add_flag("--timings-in-metadata", render.timings_in_metadata,
+               "store the time of each stage in the EXR; the file then differs between runs");
+  add_picture_options(app, options);
+  app.add_option("--target-error", options.target_error,
+                 "choose samples, tolerance and evaluator for this error at the lowest cost, e.g. 1%")
+      ->check(positive_share_check())
+      ->type_name("PERCENT")
+      ->group("Quality");
+}
+
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
   app.add_option("SCENE", scene,
                  "scene file (JSON with comments) or asset (.glb, .gltf, .obj, .ply, .stl, .off)")
@@ -76,6 +109,14 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options) {
   add_repeatable(app, "--set", options.sets,
                  "override a value of the scene, e.g. media.marble.specular_ior=1.4; repeatable")
       ->type_name("KEY=VALUE");
+  add_repeatable(app, "--medium", options.media,
+                 "medium of all shapes, or of one (SHAPE=NAME): a preset such as marble, or a medium of the "
+                 "scene; repeatable")
+      ->type_name("NAME");
+  app.add_option("--size", options.size,
+                 "largest side of the box around all shapes, e.g. 50mm or 1.7m; sets mm_per_unit")
+      ->transform(millimetres_of())
+      ->type_name("LENGTH");
   add_allow_outside(app);
   app.add_option("--log", options.log, "format of the log: text, or json (one object per line on stdout)")
       ->check(log_check())
@@ -96,6 +137,9 @@ void add_picture_options(CLI::App& app, Options& options) {
                  "exposure to 0")
       ->type_name("FILE")
       ->group("Image");
+  app.add_flag("--denoise", options.denoise,
+               "remove noise with Open Image Denoise, if it is installed (film.denoise)")
+      ->group("Image");
   option(options.method, "settings.method", "NAME");
   option(options.evaluator, "settings.evaluator", "NAME");
   option(options.entry_samples, "settings.entry_samples", "N");
@@ -104,17 +148,8 @@ void add_picture_options(CLI::App& app, Options& options) {
 }
 
 void add_render_options(CLI::App& app, RenderArguments& render, Options& options) {
-  add_repeatable(app, "-o,--output", render.outputs, "image to write, .exr or .png; repeatable")
-      ->required()
-      ->type_name("FILE");
-  add_common_options(app, render.scene, options);
-  app.add_option("--layers", options.layers,
-                 "layers of the EXR besides R, G, B and A: diffuse (default), specular, albedo, N, P, Z, "
-                 "irradiance, error, variance (of direct); all (of these) or none; also light_groups (the "
-                 "contribution of each light), cryptomatte (mattes of objects and materials) and wavelengths "
-                 "(radiance at each wavelength of a scene with spectra)")
-      ->check(layers_check())
-      ->type_name("NAME,...");
+  add_image_options(app, render, options,
+                    "image to write, .exr or .png; with --frames also a movie, .mp4 (by ffmpeg); repeatable");
   app.add_option("--samples-ply", render.samples_ply, "also write the surface samples as a PLY point cloud")
       ->type_name("FILE")
       ->check(extension_check(".ply"));
@@ -123,27 +158,10 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
                  "minute, at the end and on Ctrl-C")
       ->type_name("FILE")
       ->check(extension_check(".exr"));
-  CLI::Option* cache = app.add_option("--cache", render.cache,
-                                      "store samples, irradiance and octrees in this folder, and reuse the "
-                                      "entries with the same input")
-                           ->type_name("FOLDER");
   add_frames_option(app, options,
                     "## in output and mesh names stands for the frame number; existing frames of the same "
                     "scene are skipped");
-  add_size(app, "--cache-size", render.cache_bytes,
-           "maximum cache size, e.g. 20GB (default 8GB); evicts the least recently used entries")
-      ->needs(cache);
-  add_threads(app, render.threads, "maximum number of threads (default: one per core)");
-  app.add_flag("--quiet", render.log.quiet, "print warnings and errors only");
-  app.add_flag("--timings-in-metadata", render.timings_in_metadata,
-               "store the time of each stage in the EXR; the file then differs between runs");
-  add_picture_options(app, options);
   const char* quality = "Quality";
-  app.add_option("--target-error", options.target_error,
-                 "choose samples, tolerance and evaluator for this error at the lowest cost, e.g. 1%")
-      ->check(positive_share_check())
-      ->type_name("PERCENT")
-      ->group(quality);
   app.add_option("--time-budget", options.time_budget,
                  "choose samples, tolerance and evaluator for the lowest error within this total CPU time, "
                  "e.g. 2s; direct stops at this time")
@@ -153,6 +171,17 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
   app.add_flag("--verify", render.verify, "measure the error at some 200 points with --method direct")
       ->group(quality);
   app.footer(kRenderNotes);
+}
+
+void add_turntable_options(CLI::App& app, RenderArguments& render, Options& options) {
+  add_image_options(
+      app, render, options,
+      "movie to write, .mp4 (by ffmpeg), or images, .exr or .png, with ## for the frame number; "
+      "repeatable");
+  app.add_option("--frames", options.turn_frames, "number of frames of the turn (default 48)")
+      ->transform(whole_number({2, 100000}))
+      ->type_name("N");
+  app.footer(kTurntableNotes);
 }
 
 void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {

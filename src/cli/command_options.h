@@ -21,13 +21,15 @@ struct Options {
   std::optional<std::uint64_t> spp;
   std::optional<std::uint64_t> seed;
   std::optional<double> exposure, time_budget;
-  std::vector<std::string> sets;
+  std::vector<std::string> sets, media;
+  std::optional<double> size;  // mm
   std::string log = "text";
   std::string fail_above;
-  bool json = false;
+  bool json = false, denoise = false;
   std::string reference_error;
   std::vector<std::string> rungs;
   std::optional<std::string> frames;
+  int turn_frames = 48;
   std::string layers;
 };
 
@@ -39,6 +41,7 @@ std::string_view key_of_option(std::string_view option);
 void add_common_options(CLI::App& app, std::string& scene, Options& options);
 void add_picture_options(CLI::App& app, Options& options);
 void add_render_options(CLI::App& app, RenderArguments& render, Options& options);
+void add_turntable_options(CLI::App& app, RenderArguments& render, Options& options);
 void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options);
 void add_import_options(CLI::App& app, ImportArguments& import);
 void add_view_options(CLI::App& app, ViewArguments& view, Options& options);

@@ -9,7 +9,11 @@ namespace opaline {
 /// Renders a scene file to images. Writes nothing unless all previous steps succeed.
 /// error Error of the stages; run_failed before any work if an output cannot be written, and after all of it
 ///       if some of several frames failed
-void render_command(const RenderArguments& arguments);
+void render_command(RenderArguments arguments);
+
+/// Renders the frames of a camera that circles the scene.
+/// error as render_command
+void turntable_command(const TurntableArguments& arguments);
 
 /// Writes an asset as a scene file, and prints the translation of each value.
 /// error Error{bad_input}: not an asset, or broken; Error{run_failed}: the scene file cannot be written

@@ -21,6 +21,7 @@ inline constexpr const char* kExamples = R"(Examples:
   opaline profile marble -o marble
   opaline render bunny.json -o turned.exr --cache stages --set camera.position=[0,50,200]
   opaline render bunny.json -o out.####.exr --frames 1-24 --cache stages
+  opaline turntable statue.glb -o turn.mp4
   opaline cache ls stages
 
 Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the run failed (I/O, memory), 130 interrupted (Ctrl-C; earlier output files remain).)";
@@ -50,6 +51,18 @@ tiles of the full image and small files, and takes as many samples as the budget
 even the cheapest image exceeds the budget, opaline renders it and a warning states the expected time. The resolution,
 --spp and settings.light_samples stay as you set them. The choice depends on the clock; the "repeat with" command does
 not. With --method direct, opaline stops when the budget ends.)";
+
+inline constexpr const char* kTurntableNotes =
+    R"(The camera circles its look_at once, counter-clockwise seen from above (against its `up`); the lights stay with the
+scene. All frames share the light at the samples, so a frame costs little more than with lambert. A repeated command
+skips the frames that exist. A movie is encoded by ffmpeg (H.264); until it is complete, its frames are in a folder
+beside it, FILE.mp4.frames.
+
+Examples:
+  opaline turntable statue.glb -o turn.mp4
+  opaline turntable bunny.json -o turn.####.exr --frames 96 --resolution 1024x1024 --spp 9
+
+Exit codes: as opaline render.)";
 
 inline constexpr const char* kImportNotes =
     R"(Other commands accept an asset in place of a scene file and convert it in the same way. Each line on stderr reports the

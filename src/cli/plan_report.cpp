@@ -103,12 +103,12 @@ std::string marble_text(const Scene& scene, const World& world) {
                           [&](const char* extension) { return scene.file.ends_with(extension); });
   const bool has_lights = std::ranges::any_of(scene.lights, is_delta);  // brightness depends on the unit
   const bool has_unit = !(diagonal > 0) || !(is_unitless || (diagonal > kMuch && !has_lights));
-  return fmt::format(
-      "; --set media.marble.preset=marble --set shapes.{}.medium=marble{} gives {} the medium marble{}{}",
-      override_key(shape.name, 0),
-      has_unit ? "" : fmt::format(" --set mm_per_unit={:.2g}", scene.mm_per_unit * kHandful / diagonal),
-      shape.name, has_unit ? "" : fmt::format(", {} mm across", kHandful),
-      shape.reflectance_texture ? ", without its texture" : "");
+  const bool is_alone = scene.shapes.size() == 1;
+  return fmt::format("; --medium {}marble{} gives {} the medium marble{}{}",
+                     is_alone ? "" : override_key(shape.name, 0) + '=',
+                     has_unit ? "" : fmt::format(" --size {}mm", kHandful), is_alone ? "it" : shape.name,
+                     has_unit ? "" : fmt::format(", {} mm across", kHandful),
+                     shape.reflectance_texture ? ", without its texture" : "");
 }
 
 /// Fewer samples for large bodies, if they save much of the time.
@@ -394,11 +394,11 @@ void print_budget(const Log& log, double budget, double before, const TimeBudget
             budget, planned));
 }
 
-void print_skipped(const Log& log, const std::vector<std::string>& outputs) {
+void print_outputs(const Log& log, const char* event, const std::vector<std::string>& outputs) {
   if (log.quiet) return;
-  if (log.format == LogFormat::json) print_event(log, "skipped", {{"outputs", outputs}});
+  if (log.format == LogFormat::json) print_event(log, event, {{"outputs", outputs}});
   for (std::size_t i = 0; i < outputs.size() && log.format == LogFormat::text; ++i)
-    print_row("skipped", outputs[i]);
+    print_row(event, outputs[i]);
 }
 
 }  // namespace opaline

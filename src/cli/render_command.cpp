@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/frames.h"
 #include "cli/metadata.h"
+#include "cli/movie.h"
 #include "cli/quality.h"
 #include "cli/render_outputs.h"
 #include "cli/report.h"
@@ -18,6 +19,7 @@
 #include "cli/stages.h"
 #include "core/machine_memory.h"
 #include "core/units.h"
+#include "image/denoise.h"
 #include "input/load_scene.h"
 #include "methods/direct/direct.h"
 #include "methods/volume/volume_state.h"
@@ -139,6 +141,7 @@ Summary summarize(const Session& session, const Shading& shading) {
     summary.entry_samples = shading.direct->entry_samples;
     summary.direct_error = shading.direct->relative_error;
   }
+  if (session.scene().film.denoise) summary.denoiser = denoiser_name();
   summary.rays = shading.rays;
   summary.shading_seconds = shading.cpu_seconds;
   summary.embree_seconds = shading.embree_seconds;
@@ -206,6 +209,15 @@ void check_method_options(const RenderArguments& arguments, const Scene& scene) 
     throw bad_file(arguments.resume, "this method has no sums to resume", "--method direct or volume");
 }
 
+/// error Error{run_failed}: no denoiser; Error{bad_input}: the sum of light groups is not a denoised image
+void check_denoising(const RenderArguments& arguments, const Scene& scene) {
+  if (!scene.film.denoise) return;
+  if (is_named(arguments.layers, kLightGroups))
+    throw Error(ErrorKind::bad_input, {}, 0, 0, "light groups do not sum to a denoised image",
+                "--layers light_groups, or --denoise");
+  denoiser_name();
+}
+
 /// Gives the session its scene and returns the scene's hash; none if the frame exists already.
 std::optional<std::string> load(StageRunner& stages, const RenderArguments& arguments, Session& session,
                                 std::optional<int> frame) {
@@ -236,6 +248,7 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   name_method(arguments, session);
   check_outputs_are_no_inputs(arguments, scene);
   check_method_options(arguments, scene);
+  check_denoising(arguments, scene);
   check_layers(arguments.layers, scene);
   check_precompute(arguments, scene, session.plan());
   const std::size_t layer_bytes = asked_layer_bytes(arguments.layers, scene);
@@ -293,7 +306,9 @@ Shading make_picture(StageRunner& stages, const RenderArguments& arguments, Sess
       convert_to_rgb(image, scene.wavelengths->to_rgb);
       layers.append(image);
     }
-    return std::move(shading.direct->picture);
+    RenderResult& picture = shading.direct->picture;
+    if (scene.film.denoise) denoise(picture.image, picture.translucent, &stages.monitor());
+    return std::move(picture);
   });
   const RayScene::Statistics after = session.rays().statistics();
   shading.rays = after.rays - before.rays;
@@ -329,7 +344,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   if (arguments.time_budget) stages.note({"start", 0, process_cpu_seconds(), 0, peak_memory()});
   std::optional<std::string> hash = load(stages, arguments, session, frame);
   if (!hash) {
-    print_skipped(arguments.log, arguments.outputs);
+    print_outputs(arguments.log, "skipped", arguments.outputs);
     return false;
   }
   const Scene& scene = session.scene();
@@ -360,7 +375,8 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
 
 }  // namespace
 
-void render_command(const RenderArguments& arguments) {
+void render_command(RenderArguments arguments) {
+  const std::optional<Movie> movie = take_movie(arguments);
   std::signal(SIGPIPE, SIG_IGN);  // a closed log pipe must not fail the render
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)
@@ -391,5 +407,8 @@ void render_command(const RenderArguments& arguments) {
   for_frames(settled.log, settled.frames, so_far, [&](int frame) {
     return render_scene(arguments_of_frame(settled, frame), session, shared, frame);
   });
+  if (!movie) return;
+  encode(*movie, arguments.frames_per_second.value_or(24));
+  print_outputs(arguments.log, "wrote", {movie->path});
 }
 }  // namespace opaline

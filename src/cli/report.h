@@ -50,7 +50,7 @@ void print_budget(const Log& log, double budget, double before, const TimeBudget
                   const Settings& settings);
 
 /// Prints the existing images of a skipped frame.
-void print_skipped(const Log& log, const std::vector<std::string>& outputs);
+void print_outputs(const Log& log, const char* event, const std::vector<std::string>& outputs);
 
 /// Standard error of a light's irradiance, over its mean (LightTransfer::relative_error).
 struct LightNoise {
@@ -92,6 +92,7 @@ struct Summary {
   /// Rays of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.
   std::uint64_t rays = 0;
   double shading_seconds = 0, embree_seconds = 0;
+  std::string denoiser;  ///< empty: the image has its noise
   std::vector<std::string> outputs;
 };
 

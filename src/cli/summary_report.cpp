@@ -115,6 +115,11 @@ void print_text(const Summary& summary) {
                              noise.group, short_percent(noise.relative_error)));
   if (summary.noise.size() > worst.size())
     row("", fmt::format("{} more with lower noise", summary.noise.size() - worst.size()));
+  if (!summary.denoiser.empty())
+    row("denoised",
+        "after the errors above: specular and diffuse light, that of translucent shapes within twice "
+        "its estimated error, by " +
+            summary.denoiser);
   row("rays", fmt::format("{} in the shading pass: {:.3g} Mray per CPU second; {:.3g} in Embree alone",
                           grouped(summary.rays), mega_rays(summary.rays, summary.shading_seconds),
                           mega_rays(summary.rays, summary.embree_seconds)));
@@ -144,6 +149,7 @@ Json done_json(const Summary& summary) {
             {"samples", summary.samples},
             {"queries", summary.queries},
             {"irradiance_noise", noise},
+            {"denoiser", summary.denoiser},
             {"estimated_error", summary.estimated_error},
             {"errors", errors_json(summary.errors)},
             {"walks", summary.walks},

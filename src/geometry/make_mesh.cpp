@@ -5,14 +5,18 @@
 #include <cmath>
 #include <utility>
 
+#include "core/units.h"
 #include "geometry/builtin_shapes.h"
 #include "geometry/check_mesh.h"
 #include "geometry/read_mesh.h"
 #include "geometry/shape_label.h"
+#include "geometry/subdivide.h"
 #include "opaline/error.h"
 
 namespace opaline {
 namespace {
+
+constexpr std::size_t kMostTriangles = 200'000'000;
 
 struct SourceReader {
   const std::string& name;
@@ -106,6 +110,13 @@ SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs)
   if (const auto* file = std::get_if<MeshFile>(&shape.source)) {
     if (file->fit_size) fit(mesh, *file->fit_size, name);
     choose_colors(*file, name, mesh);
+    for (int round = 0; round < file->subdivide; ++round) {
+      if (mesh.triangles.size() > kMostTriangles / 4)
+        throw bad_file(name,
+                       "has too many triangles to subdivide " + std::to_string(file->subdivide) + " times",
+                       "at most " + grouped(kMostTriangles) + " after subdivision");
+      mesh = subdivided(std::move(mesh));
+    }
     if (file->crease_angle) mesh.smoothing = {{}, *file->crease_angle};
   }
   return mesh;

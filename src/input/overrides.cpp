@@ -68,17 +68,22 @@ class Override {
     const std::string_view path = text_.substr(0, equals);
     if (std::ranges::count(path, '.') >= max_depth)
       fail("the path is nested too deeply", "at most " + std::to_string(max_depth) + " levels");
-    Node* node = &document_.root;
-    for (std::size_t begin = 0; begin <= path.size();) {
-      const auto [name, end] = next_name(path, begin, *node);
-      if (name.empty()) fail("an empty name in the path", "path.to.key=value");
-      node = &step(*node, name, path.substr(0, begin > 0 ? begin - 1 : 0));
-      begin = end + 1;
-    }
-    replace(*node, text_.substr(equals + 1));
+    set_below(document_.root, path, 0, text_.substr(equals + 1));
   }
 
  private:
+  /// begin: of the rest of the path, from `node` on
+  void set_below(Node& node, std::string_view path, std::size_t begin, std::string_view value) const {
+    if (begin > path.size()) return replace(node, value);
+    const auto [name, end] = next_name(path, begin, node);
+    if (name.empty()) fail("an empty name in the path", "path.to.key=value");
+    const std::string_view so_far = path.substr(0, begin > 0 ? begin - 1 : 0);
+    if (name != "*" || node.kind != Node::Kind::array)
+      return set_below(step(node, name, so_far), path, end + 1, value);
+    if (node.children.empty()) fail("'" + printable(so_far) + "' is empty", "at least one element for *");
+    for (Node& child : node.children) set_below(child, path, end + 1, value);
+  }
+
   [[noreturn]] void fail(const std::string& message, const std::string& expected = {}) const {
     throw error_at(document_, 0, index_, message, expected);
   }

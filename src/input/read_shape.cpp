@@ -20,6 +20,7 @@ MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) 
   if (const auto fit_size = shape.find("fit_size")) mesh.fit_size = fit_size->length(context.mm_per_unit);
   if (const auto colors = shape.find("vertex_colors")) mesh.vertex_colors = colors->flag();
   if (const auto crease = shape.find("crease_angle")) mesh.crease_angle = crease->number();
+  if (const auto rounds = shape.find("subdivide")) mesh.subdivide = int(rounds->whole_number());
   return mesh;
 }
 
@@ -64,7 +65,8 @@ ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, 
   const std::string_view kind = shape.exactly_one_of(source_names);
   place = shape.need(kind).place();
   if (kind == "file") return read_mesh_file(shape, context);
-  for (const std::string_view option : {"part", "fill_holes", "fit_size", "vertex_colors", "crease_angle"})
+  for (const std::string_view option :
+       {"part", "fill_holes", "fit_size", "vertex_colors", "crease_angle", "subdivide"})
     if (const auto value = shape.find(option)) value->fail_key("has no effect without 'file'");
   const ObjectReader source(shape.need(kind), "shape." + std::string(kind));
   const double mm_per_unit = context.mm_per_unit;
@@ -102,8 +104,14 @@ std::size_t find_medium(const Value& value, const std::vector<Medium>& media) {
   }
   const std::string hint = did_you_mean(name, names);
   if (hint.empty()) fail_if_preset(value, name);
-  value.fail("is not a medium of this scene" + hint,
-             names.empty() ? "a name from 'media', which is empty" : "one of " + printable(join(names)));
+  std::string expected =
+      names.empty() ? "a name from 'media', which is empty" : "one of " + printable(join(names));
+  if (value.node().override_index >= 0) {
+    names.clear();
+    for (const Preset& preset : presets()) names.push_back(preset.name);
+    expected += ", or with --medium a preset: " + join(names);
+  }
+  value.fail("is not a medium of this scene" + hint, expected);
 }
 
 void read_gloss(const ObjectReader& reader, Shape& shape) {

@@ -193,6 +193,10 @@ std::span<const Member<Film>> film_members() {
           "the fewest for the scene's spectra, with colours within 1 %; without spectra, "
           "red, green and blue",
           {}, "number of wavelengths of spectra, a multiple of 3; each three take the time of an image"),
+      member<&Film::denoise>(
+          "denoise", flag, "", kFiniteNumber, "", {},
+          "removes noise with Open Image Denoise, if it is installed; the diffuse light of "
+          "translucent shapes changes by at most twice its estimated error"),
   };
   return table;
 }

@@ -24,6 +24,7 @@
 #include "plan/other_wavelengths.h"
 #include "plan/picture_warnings.h"
 #include "plan/seen_pixels.h"
+#include "render/render.h"
 #include "scene/names.h"
 #include "scene/scene_properties.h"
 #include "subsurface/method.h"
@@ -245,6 +246,13 @@ std::size_t most_bytes(const Scene& scene, const World& world, std::size_t first
   return most + (most - without_bodies) / 2;
 }
 
+/// The library, its filter, and the filtered layer. Fitted to 128 x 128 to 2048 x 2048 pixels.
+std::size_t bytes_of_denoiser(const Film& film) {
+  const Rectangle part = rendered_part(film);
+  const std::size_t pixels = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);
+  return 8'000'000 + std::min<std::size_t>(550 * pixels, 325'000'000) + 24 * pixels;
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const World& world) {
@@ -307,6 +315,7 @@ Plan make_plan(const Scene& scene, const World& world) {
       bounces, caches + std::min(60 * seen, 500 * samples) + std::size_t(kStillHeld * double(bounces)));
   if (samples > 0 && scene.film.samples_per_pixel > 1) plan.bytes += 5'000'000;
   plan.bytes += std::size_t(temporary);
+  if (scene.film.denoise) plan.bytes += bytes_of_denoiser(scene.film);
   if (!scene.other_wavelengths.empty()) plan.bytes = most_bytes(scene, world, plan.bytes, without_bodies);
   plan.rays = cheaper_build(scene, lights, plan);
   list_stages(scene, lights, plan);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/cancel_check.h"
+#include "image/denoise.h"
 #include "methods/hierarchical/surface_caches.h"
 #include "plan/choose_models.h"
 #include "plan/make_plan.h"
@@ -267,7 +268,10 @@ void Session::State::prepare(Monitor* monitor) {
 
 RenderResult Session::render(Monitor* monitor) {
   const CancelScope scope(monitor);
-  return state_->scene_.wavelengths ? state_->spectral_image(monitor) : state_->channels_image(monitor);
+  RenderResult result =
+      state_->scene_.wavelengths ? state_->spectral_image(monitor) : state_->channels_image(monitor);
+  if (state_->scene_.film.denoise) denoise(result.image, result.translucent, monitor);
+  return result;
 }
 
 RenderResult Session::State::channels_image(Monitor* monitor) {

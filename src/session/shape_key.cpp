@@ -21,6 +21,7 @@ struct AddSource {
     key.add(mesh.fit_size.value_or(0));
     key.add(mesh.vertex_colors.has_value()).add(mesh.vertex_colors.value_or(false));
     key.add(mesh.crease_angle.value_or(-1));
+    if (mesh.subdivide > 0) key.add(mesh.subdivide);
   }
   void operator()(const SphereShape& s) const { key.add(s.center).add(s.radius).add(s.fineness); }
   void operator()(const BoxShape& s) const { key.add(s.low).add(s.high); }

@@ -50,10 +50,9 @@ struct OtherWord {
 // Other programs' names of options, keys and choices.
 constexpr OtherWord kOtherWords[] = {
     {"--cores", {"--threads"}},
-    {"--denoise", {"--target-error", "--until-error"}},
     {"--error", {"--target-error", "--until-error"}},
     {"--jobs", {"--threads"}},
-    {"--noise", {"--target-error", "--until-error"}},
+    {"--noise", {"--denoise", "--until-error"}},
     {"--quality", {"--target-error", "--spp"}},
     {"--verbose", {"--log"}},
     {"--workers", {"--threads"}},

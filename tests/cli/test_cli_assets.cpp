@@ -125,13 +125,26 @@ TEST(CliAssets, HowToMakeMarbleOfIt) {
   std::filesystem::copy(OPALINE_SCENES_DIR "/../tests/cli/goldens/room.exr", folder.file("wood.exr"));
   const Outcome info = run_program({"info", "a.obj"}, folder.path.string());
   EXPECT_TRUE(contains(info.out,
-                       "; --set media.marble.preset=marble --set shapes.wood.medium=marble --set "
-                       "mm_per_unit=29 gives wood the medium marble, 50 mm across, without its texture"))
+                       "; --medium marble --size 50mm gives it the medium marble, 50 mm across, without its "
+                       "texture"))
       << info.out;
-  const Outcome marble = run_program({"info", "a.obj", "--set", "media.marble.preset=marble", "--set",
-                                      "shapes.wood.medium=marble", "--set", "mm_per_unit=29"},
-                                     folder.path.string());
-  EXPECT_TRUE(contains(marble.out, "translucent wood of marble")) << marble.out << marble.err;
+  const std::vector<std::string> line{"info", "a.obj", "--medium", "marble", "--size", "50mm"};
+  const Outcome marble = run_program(line, folder.path.string());
+  // Three right triangles with sides of 50 mm, and one with their diagonals.
+  EXPECT_TRUE(contains(marble.out, "translucent wood of marble: 5915 mm^2")) << marble.out << marble.err;
+}
+
+// Claim: --medium SHAPE=NAME names one shape and a medium of the scene, --size scales a scene file, too, and --set wins over both. By hand: a
+// ball of 20 units across at 50 mm has 2.5 mm a unit, 7,854 mm^2. Fails if: lengths are taken for the radius.
+TEST(CliAssets, MediumAndSizeOfAScene) {
+  const SceneFolder folder;
+  const Outcome sized = run_program({"info", folder.scene, "--size", "5cm", "--medium", "ball=skin1"});
+  EXPECT_TRUE(contains(sized.out, "translucent ball of skin1: 785")) << sized.out << sized.err;
+  const Outcome own = run_program({"info", folder.scene, "--size", "5cm", "--set", "mm_per_unit=1"});
+  EXPECT_TRUE(contains(own.out, "translucent ball of marble: 125")) << own.out << own.err;
+  const Outcome unknown = run_program({"info", folder.scene, "--medium", "marbel"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(contains(unknown.err, "marble")) << unknown.err;
 }
 
 // Claim: `--environment` lights a scene by a picture in place of all its lights, wherever the program is started: what is
@@ -435,10 +448,10 @@ TEST(CliAssets, MarbleOfAFigureInMetresHasASize) {
   const ScratchFolder folder;
   put_bytes(folder.file("a.glb"), asset_test::cube_asset().glb());  // 2 m
   const Outcome info = run_program({"info", "a.glb"}, folder.path);
-  EXPECT_TRUE(contains(info.out,
-                       "; --set media.marble.preset=marble --set shapes.cube.medium=marble --set "
-                       "mm_per_unit=14 gives cube the medium marble, 50 mm across"))
+  EXPECT_TRUE(contains(info.out, "; --medium marble --size 50mm gives it the medium marble, 50 mm across"))
       << info.out;
+  const Outcome marble = run_program({"info", "a.glb", "--medium", "marble", "--size", "50mm"}, folder.path);
+  EXPECT_TRUE(contains(marble.out, "cube of marble: 1.5e+04 mm^2")) << marble.out << marble.err;
 }
 
 // Claim: the command that the plan suggests for a shape whose name has a point works as it stands. Source: Blender calls copies
@@ -446,16 +459,17 @@ TEST(CliAssets, MarbleOfAFigureInMetresHasASize) {
 TEST(CliAssets, SuggestedCommandsWork) {
   const ScratchFolder folder;
   put_bytes(folder.file("a.obj"),
-            "o Cube.001\nv 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-  const std::string out = run_program({"info", "a.obj"}, folder.path).out, begin = "--set shapes.";
+            "o Cube.001\nv 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+            "o Cube.002\nv 20 0 0\nv 29 0 0\nv 20 9 0\nv 20 0 9\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 7 5 8\n");
+  const std::string out = run_program({"info", "a.obj"}, folder.path).out, begin = "--medium ";
   const std::size_t at = out.find(begin);
   ASSERT_NE(at, out.npos) << out;
-  const std::size_t from = at + std::string("--set ").size();
-  const Outcome marble = run_program({"info", "a.obj", "--set", "media.marble.preset=marble", "--set",
-                                      out.substr(from, out.find(' ', from) - from)},
-                                     folder.path);
+  const std::size_t from = at + begin.size();
+  const Outcome marble =
+      run_program({"info", "a.obj", "--medium", out.substr(from, out.find(' ', from) - from)}, folder.path);
   EXPECT_EQ(marble.exit_code, 0) << marble.err;
   EXPECT_TRUE(contains(marble.out, "of marble: ")) << marble.out;
+  EXPECT_FALSE(contains(marble.out, "Cube.002 of marble")) << marble.out;
 }
 
 // Claim: an asset that is broken, or is none, ends with code 2, its name, and without a scene file. Fails if the file

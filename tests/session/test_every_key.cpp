@@ -148,6 +148,7 @@ std::vector<Change> changes() {
       {"shape.fit_size", "shapes.ball.fit_size=24", {kMesh}},
       {"shape.vertex_colors", "shapes.ball.vertex_colors=false", {kColoredMesh}},
       {"shape.crease_angle", "shapes.ball.crease_angle=20", {kMesh}},
+      {"shape.subdivide", "shapes.ball.subdivide=1", {kMesh}},
       {"shape.transform", step(R"({"translate": [0, 3, 0]})")},
       {"shape.normals", "shapes.ball.normals=faceted"},
       {"shape.medium", "shapes.ball.medium=wax"},
@@ -327,6 +328,7 @@ const std::vector<std::string> kWithoutPicture{"scene.$schema",
                                                "settings.entry_samples",
                                                "settings.until_error",
                                                "settings.reference_frame",
+                                               "film.denoise",
                                                "settings.laboratory.instruction_set"};
 
 /// "section.key", as Change has it.

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/asset_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "assets/import_asset.h"
+#include "geometry/world.h"
+#include "input/load_scene.h"
+#include "input/presets.h"
+#include "opaline/error.h"
+
+namespace opaline {
+namespace {
+
+/// Largest side of the box around all shapes, scene units.
+double extent_of(const std::string& path, const std::vector<std::string>& overrides) {
+  if (is_asset_name(path) && overrides.empty()) return import_asset(path, path).defaults.extent;
+  const Scene scene = load_scene(path, overrides);
+  Bounds all;
+  for (const Bounds& box : make_world(scene).boxes) {
+    all.low = component_min(all.low, box.low);
+    all.high = component_max(all.high, box.high);
+  }
+  return scene.shapes.empty() ? 0 : max_component(all.high - all.low) / scene.mm_per_unit;
+}
+
+}  // namespace
+
+std::vector<std::string> medium_overrides(const std::string& option) {
+  const std::size_t equals = option.rfind('=');
+  const std::string medium = option.substr(equals + 1),  // npos + 1 is 0
+      shape = equals == option.npos ? "*" : option.substr(0, equals);
+  std::vector<std::string> overrides;
+  if (std::ranges::find(presets(), medium, &Preset::name) != presets().end())
+    overrides.push_back(fmt::format("media.{0}.preset={0}", medium));
+  overrides.push_back(fmt::format("shapes.{}.medium={}", shape, medium));
+  return overrides;
+}
+
+std::string size_override(const std::string& scene, const std::vector<std::string>& overrides, double size) {
+  const double extent = extent_of(scene, overrides);
+  if (!(extent > 0)) throw bad_file(scene, "has no size to scale to --size", "a shape");
+  return fmt::format("mm_per_unit={}", size / extent);
+}
+
+}  // namespace opaline
