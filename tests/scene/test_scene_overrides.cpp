@@ -35,6 +35,24 @@ TEST(SceneOverrides, Apply) {
   EXPECT_EQ(parse(base, {"media.marble.eta=1.2", "media.marble.specular_ior=1.1"}).media[0].eta, 1.1);
 }
 
+// Claim: * in a path names all elements of a list, and none of an empty one; a medium may be called so. Source: scenes/README.md. Fails if:
+// only the first one is set.
+TEST(SceneOverrides, AllElements) {
+  const Scene scene = parse(base, {"shapes.*.medium=skin", "shapes.*.name=x"});
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  for (const Shape& shape : scene.shapes) {
+    EXPECT_EQ(shape.medium, 1u);
+    EXPECT_EQ(shape.name, "x");
+  }
+  EXPECT_EQ(parse("{}", {"media.*.preset=cream"}).media.at(0).name, "*");
+  try {
+    parse(R"({"shapes": []})", {"shapes.*.medium=skin"});
+    ADD_FAILURE() << "no error";
+  } catch (const Error& failure) {
+    EXPECT_NE(std::string(failure.what()).find("'shapes' is empty"), std::string::npos) << failure.what();
+  }
+}
+
 // Claim: a number without the zero before its point is one; words and nothing are none. Fails if: JSON's own rule decides,
 // or a zero is put before everything.
 TEST(SceneOverrides, NumbersBeginWithAPoint) {
