@@ -120,7 +120,7 @@ std::vector<KeyInfo> shape_rows() {
       row("shape", "subdivide", whole_number, "", {0, MeshFile::kMostRounds}, "0",
           "with `file`: rounds of Loop subdivision of a coarse cage; each rounds the shape, with four times "
           "as "
-          "many triangles. Normals and creases of the file are ignored; open edges stay"),
+          "many triangles. Normals and creases of the file are ignored; open borders become smooth curves"),
       row("shape", "medium", text, "", kFiniteNumber, "opaque", "name of a medium"),
       textured(row("shape", "reflectance", color, "", kUnitInterval, "0.5",
                    "diffuse reflectance of an opaque shape, multiplied by `vertex_colors`; cannot be "

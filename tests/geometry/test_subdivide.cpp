@@ -74,8 +74,9 @@ TEST(Subdivide, ConvergesToTheLimit) {
   EXPECT_NEAR(mesh.positions[0].x, .5, 1e-4);
 }
 
-// Claim: a flat sheet stays flat, with its outline: corners and borders of a square are where they were at their ends, UVs go with places in
-// the middle. Tolerance: rounding. Fails if: borders shrink inwards, or corners of data are taken from other triangles.
+// Claim: a flat sheet stays flat, straight borders stay where they are, and a corner is rounded as a curve: 3/4 of it and 1/8 of each
+// neighbour; UVs go with places in the middle. Tolerance: rounding. Fails if: borders shrink inwards, or corners of data are taken from
+// other triangles.
 TEST(Subdivide, BordersAreKept) {
   const SourceMesh once = subdivided(sheet());
   Vec3d low(1e9), high(-1e9);
@@ -86,6 +87,8 @@ TEST(Subdivide, BordersAreKept) {
   }
   EXPECT_EQ(low, Vec3d(0, 0, 0));
   EXPECT_EQ(high, Vec3d(4, 4, 0));
+  EXPECT_EQ(once.positions[0], Vec3d(.125, .125, 0));
+  EXPECT_EQ(once.positions[2], Vec3d(2, 0, 0));
   EXPECT_EQ(open_edges(once), 2 * open_edges(sheet()));
   ASSERT_EQ(once.uvs.size(), once.triangles.size());
   for (std::size_t t = 0; t < once.triangles.size(); ++t)

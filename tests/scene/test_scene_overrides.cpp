@@ -38,11 +38,11 @@ TEST(SceneOverrides, Apply) {
 // Claim: * in a path names all elements of a list, and none of an empty one; a medium may be called so. Source: scenes/README.md. Fails if:
 // only the first one is set.
 TEST(SceneOverrides, AllElements) {
-  const Scene scene = parse(base, {"shapes.*.medium=skin", "shapes.*.name=x"});
+  const Scene scene = parse(base, {"shapes.*.medium=skin", "shapes.*.normals=faceted"});
   ASSERT_EQ(scene.shapes.size(), 2u);
   for (const Shape& shape : scene.shapes) {
     EXPECT_EQ(shape.medium, 1u);
-    EXPECT_EQ(shape.name, "x");
+    EXPECT_EQ(shape.normals, NormalMode::faceted);
   }
   EXPECT_EQ(parse("{}", {"media.*.preset=cream"}).media.at(0).name, "*");
   try {
