@@ -15,11 +15,11 @@ build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev 
   libpugixml-dev libboost-dev libmurmurhash-dev libjs-chart.js help2man)
 # The pages of the view and of reports are tested in a browser, 98 MB to fetch and 300 MB on the disk.
 # shellcheck disable=SC2034
-test_packages=(libgtest-dev parallel clang-format chromium-headless-shell python3-jsonschema)
-# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. python3-venv: for Mitsuba
-# and Blender, which needs the others.
+test_packages=(libgtest-dev parallel clang-format chromium-headless-shell python3-jsonschema python3-dev python3-venv)
+# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. The others are for
+# Blender.
 # shellcheck disable=SC2034
-long_test_packages=(assimp-testmodels python3-venv libvulkan1 libxrender1 libxi6 libxkbcommon0 libsm6 libgl1 libegl1
+long_test_packages=(assimp-testmodels libvulkan1 libxrender1 libxi6 libxkbcommon0 libsm6 libgl1 libegl1
   libxxf86vm1 libxfixes3)
 
 log=$root/scenes/out/${0##*/}.log
@@ -146,6 +146,20 @@ fetch_mitsuba() {
     touch "$folder/done"
   else
     say "Mitsuba cannot be had from PyPI: the tests against it are skipped" >&2
+    rm -rf "$folder"
+  fi
+}
+
+# For the Python package and its tests; the same holds. Examples: with the libraries that they use.
+fetch_python() {
+  local folder=$root/build-python packages=(nanobind numpy pytest)
+  [[ ${1:-} != --examples ]] || packages+=(scipy matplotlib)
+  [[ ! -e $folder/done${1:-} ]] || return 0
+  say "fetching ${packages[*]} from PyPI"
+  if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet "${packages[@]}"; then
+    touch "$folder/done${1:-}"
+  else
+    say "${packages[*]} cannot be had from PyPI: the Python package is not tested" >&2
     rm -rf "$folder"
   fi
 }

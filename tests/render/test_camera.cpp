@@ -207,8 +207,8 @@ TEST(Camera, LampsBlurToDiscsOfTheSameLight) {
 }
 
 // Claim: a lens of almost no diameter renders the pinhole's image, with bounced light, and so does a parallel projection of the
-// height seen at the distance, from far away. Tolerance: 1e-3 of the mean; 2 %. Fails if: places of bounced light or a surface cache are
-// looked for from other rays than the image's.
+// height seen at the distance, from far away. Tolerance: 1e-3 of the mean; 2 %. Fails if: footprints or projections of
+// parallel rays are those of a pinhole.
 TEST(Camera, LimitsAgree) {
   Scene scene = single_shape(SphereShape{{0, 0, 0}, 10, kLeastFineness}, grey_medium(1, 0.5, 1.3), 1);
   Shape floor;

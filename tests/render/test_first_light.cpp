@@ -83,21 +83,26 @@ TEST(FirstLight, ShowsThePicture) {
 // Claim: things are where they are in the picture, whether or not the stride divides its size: a lit wall
 // that fills the picture, brightest off the middle, differs by what lies between linear and curved, on
 // average 7e-5 stride^2 at most. Source: first_light.h. Measured: 6e-5 stride^2. Fails if: coarse pixels are
-// placed from the corner of the picture.
+// placed from the corner of the picture, or a coarse picture forgets the shift or the height of parallel rays.
 TEST(FirstLight, AtItsPlace) {
   Scene scene = single_shape(QuadShape{{-100, -100, 0}, {200, 0, 0}, {0, 200, 0}}, marble(), 1000);
   scene.shapes[0].medium = {};
   scene.lights = {point_light({14, -9, 30}, {1e4, 1e4, 1e4})};
   scene.settings.method = Method::lambert;
-  for (const std::array<int, 2> size : {std::array{203, 149}, {131, 160}}) {
-    scene.film.resolution = size;
-    const World world = make_world(scene);
-    const RayScene rays(world);
-    const Image picture = render({scene, world, rays}).image;
-    for (const int stride : {1, 3, 8, 11})
-      EXPECT_LT(difference(coarse_picture({scene, world, rays}, stride), picture), 7e-5 * stride * stride)
-          << size[0] << ' ' << stride;
-  }
+  Camera shifted = scene.camera, parallel = scene.camera;
+  shifted.shift = {.2, -.1};
+  parallel.orthographic_height = 60;
+  for (const Camera& camera : {scene.camera, shifted, parallel})
+    for (const std::array<int, 2> size : {std::array{203, 149}, {131, 160}}) {
+      scene.camera = camera;
+      scene.film.resolution = size;
+      const World world = make_world(scene);
+      const RayScene rays(world);
+      const Image picture = render({scene, world, rays}).image;
+      for (const int stride : {1, 3, 8, 11})
+        EXPECT_LT(difference(coarse_picture({scene, world, rays}, stride), picture), 7e-5 * stride * stride)
+            << size[0] << ' ' << stride;
+    }
 }
 
 // Claim: a crop's coarse picture is the part of the whole one's. Source: first_light.h. Tolerance: coarse
