@@ -117,7 +117,8 @@ SharedImage image_of(const nb::ndarray<const float, nb::ndim<3>, nb::c_contig, n
   return image;
 }
 
-void write_image(const Image& image, const std::string& path, bool half, double exposure, const std::string& view) {
+void write_image(const Image& image, const std::string& path, bool half, double exposure,
+                 const std::string& view) {
   const auto is_png = path.ends_with(".png") || path.ends_with(".PNG");
   const auto names = names_of(ViewTransform{});
   const auto found = std::ranges::find(names, view);
@@ -200,9 +201,7 @@ class PythonSession {
     return std::make_shared<Image>(std::move(result.image));
   }
 
-  std::optional<double> estimated_error() const {
-    return error_ > 0 ? std::optional(error_) : std::nullopt;
-  }
+  std::optional<double> estimated_error() const { return error_ > 0 ? std::optional(error_) : std::nullopt; }
 
   nb::ndarray<nb::numpy, float, nb::shape<-1, 3>> exitance(std::size_t body, const Triples<double>& points,
                                                            const Triples<float>& normals) {
@@ -216,9 +215,10 @@ class PythonSession {
       directions[i] = {n[0], n[1], n[2]};
     }
     auto* const values = new std::vector<float>;
-    const nb::capsule owner(values, [](void* owned) noexcept { delete static_cast<std::vector<float>*>(owned); });
-    for (const RgbF& color : interruptible(
-             [&](Monitor&) { return session_.radiant_exitance(body, places, directions); }))
+    const nb::capsule owner(values,
+                            [](void* owned) noexcept { delete static_cast<std::vector<float>*>(owned); });
+    for (const RgbF& color :
+         interruptible([&](Monitor&) { return session_.radiant_exitance(body, places, directions); }))
       values->insert(values->end(), {color.x, color.y, color.z});
     return {values->data(), {places.size(), 3}, owner};
   }
@@ -259,7 +259,8 @@ NB_MODULE(_opaline, module) {
       new_exception(module, "Error", PyExc_RuntimeError,
                     "An error of opaline, with file, line, column, message, expected and got.");
   bad_input = new_exception(module, "BadInput", error, "A scene, asset or value that cannot be used.");
-  run_failed_error = new_exception(module, "RunFailed", error, "A file that cannot be written, or too little memory.");
+  run_failed_error =
+      new_exception(module, "RunFailed", error, "A file that cannot be written, or too little memory.");
   nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
     try {
       std::rethrow_exception(thrown);
@@ -273,18 +274,22 @@ NB_MODULE(_opaline, module) {
       .def_ro("height", &Image::height)
       .def_ro("channels", &Image::channels, "Names, such as 'R', 'diffuse.R', 'N.X', 'Z'.")
       .def_ro("metadata", &Image::metadata)
-      .def_prop_ro("color", [](const SharedImage& image) { return layer_view(image, ""); },
-                   "R, G and B: height x width x 3, without a copy.")
+      .def_prop_ro(
+          "color", [](const SharedImage& image) { return layer_view(image, ""); },
+          "R, G and B: height x width x 3, without a copy.")
       .def_prop_ro("array", &all_channels, "All channels: height x width x channels, without a copy.")
       .def("__getitem__", &layer_view, "layer"_a,
            "A layer such as 'diffuse' (height x width x 3) or 'Z' (height x width), without a copy.")
       .def("write", &write_image, "path"_a, "half"_a = true, "exposure"_a = 0.0, "view"_a = "soft",
            "Writes an EXR, or a PNG after the exposure (stops) and view transform.");
-  module.def("image", &image_of, "pixels"_a, "channels"_a, "An image of an array, height x width x channels.");
-  module.def("read_image", [](const std::string& path) { return std::make_shared<Image>(read_image(path)); },
-             "path"_a, "Reads an EXR, HDR or PNG as linear Rec.709.");
+  module.def("image", &image_of, "pixels"_a, "channels"_a,
+             "An image of an array, height x width x channels.");
+  module.def(
+      "read_image", [](const std::string& path) { return std::make_shared<Image>(read_image(path)); },
+      "path"_a, "Reads an EXR, HDR or PNG as linear Rec.709.");
   module.def("compare", &compare_images, "image"_a, "reference"_a, "layer"_a = "",
-             "Relative errors over the pixels that the reference covers: mean, rel_mse, p99, max, signed; by channel; "
+             "Relative errors over the pixels that the reference covers: mean, rel_mse, p99, max, signed; by "
+             "channel; "
              "and the mean of FLIP.");
   module.def("set_threads", &set_threads, "threads"_a, "Largest number of threads; 0: one for each core.");
   module.def("presets", [] {
