@@ -24,6 +24,10 @@ class MeshChecker {
     origins_.resize(std::max({source_.uvs.size(), source_.tangents.size(), source_.colors.size(),
                               source_.smoothing.groups.size()}));
     for (std::size_t t = 0; t < origins_.size(); ++t) origins_[t] = std::uint32_t(2 * t);
+    const std::vector<Vec3d>& p = source_.positions;
+    if (std::ranges::all_of(source_.triangles,
+                            [&](const Triangle& t) { return is_sliver(p[t[0]], p[t[1]], p[t[2]]); }))
+      throw without_area(source_.triangles.size() + source_.collapsed);  // its parts take time
     find_same_vertices();
     if (!recall()) {
       start_memory();
@@ -36,9 +40,7 @@ class MeshChecker {
     report_.warnings.insert(report_.warnings.begin(), source_.warnings.begin(), source_.warnings.end());
     report_.zero_area_dropped += source_.collapsed;
     drop_slivers();
-    if (source_.triangles.empty())
-      throw bad_file(settings_.name, "the mesh has no area", "at least one triangle with nonzero area",
-                     std::to_string(report_.zero_area_dropped) + " with zero area");
+    if (source_.triangles.empty()) throw without_area(report_.zero_area_dropped);
     warn_about_drops();
     CheckedMesh checked;
     checked.mesh = compacted();
@@ -50,6 +52,11 @@ class MeshChecker {
   }
 
  private:
+  Error without_area(std::size_t dropped) const {
+    return bad_file(settings_.name, "the mesh has no area", "at least one triangle with nonzero area",
+                    std::to_string(dropped) + " with zero area");
+  }
+
   /// Warnings lack the mesh's name until all are known.
   void warn(std::string text) { report_.warnings.push_back(std::move(text)); }
 
