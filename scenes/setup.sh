@@ -156,11 +156,13 @@ fetch_python() {
   [[ ${1:-} != --examples ]] || packages+=(scipy matplotlib)
   [[ ! -e $folder/done${1:-} ]] || return 0
   say "fetching ${packages[*]} from PyPI"
+  local is_new=no
+  [[ -e $folder/done ]] || is_new=yes
   if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet "${packages[@]}"; then
     touch "$folder/done${1:-}"
   else
-    say "${packages[*]} cannot be had from PyPI: the Python package is not tested" >&2
-    rm -rf "$folder"
+    say "${packages[*]} cannot be had from PyPI: what needs them is not tested" >&2
+    [[ $is_new == no ]] || rm -rf "$folder"
   fi
 }
 

@@ -42,7 +42,7 @@ std::vector<std::string> environment_overrides(const std::string& picture) {
           "film.exposure=0"};
 }
 
-std::vector<std::string> overrides_of(const Options& options) {
+std::vector<std::string> overrides_of(const Options& options, const std::string& scene) {
   std::vector<std::string> overrides;
   if (!options.environment.empty()) overrides = environment_overrides(options.environment);
   const auto add = [&](const char* key, const std::string& value) {
@@ -61,7 +61,7 @@ std::vector<std::string> overrides_of(const Options& options) {
   add("settings.evaluator", options.evaluator);
   if (options.seed) add("settings.seed", std::to_string(*options.seed));
   for (const std::string& medium : options.media)
-    for (std::string& text : medium_overrides(medium)) overrides.push_back(std::move(text));
+    for (std::string& text : medium_overrides(scene, medium)) overrides.push_back(std::move(text));
   overrides.insert(overrides.end(), options.sets.begin(), options.sets.end());
   return overrides;
 }
@@ -171,7 +171,7 @@ BenchArguments checked(BenchArguments bench, const Options& options) {
     const std::size_t equals = text.find('=');
     bench.rungs.push_back({"hierarchical", "", text.substr(0, equals), text.substr(equals + 1)});
   }
-  bench.overrides = overrides_of(options);
+  bench.overrides = overrides_of(options, {});
   return bench;
 }
 
@@ -400,10 +400,13 @@ Command command_of(const std::string& name, Parsed parsed) {
     return arguments;
   };
   const auto with_overrides = [&](auto arguments) {
-    arguments.overrides = overrides_of(options);
-    if (options.size)
-      arguments.overrides.insert(arguments.overrides.begin(),
-                                 size_override(arguments.scene, options.sets, *options.size));
+    arguments.overrides = overrides_of(options, arguments.scene);
+    if (options.size) {
+      if (std::ranges::any_of(options.sets,
+                              [](const std::string& text) { return text.starts_with("mm_per_unit="); }))
+        throw usage_error("--size sets mm_per_unit, which is given, too", "one of the two");
+      arguments.overrides.push_back(size_override(arguments.scene, arguments.overrides, *options.size));
+    }
     return with_log(std::move(arguments));
   };
   const auto with_frames = [&](auto arguments) {

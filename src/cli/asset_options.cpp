@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
+#include <nlohmann/json.hpp>
 
 #include "assets/import_asset.h"
 #include "geometry/world.h"
@@ -26,14 +28,25 @@ double extent_of(const std::string& path, const std::vector<std::string>& overri
   return scene.shapes.empty() ? 0 : max_component(all.high - all.low) / scene.mm_per_unit;
 }
 
+/// False for assets and files that are no scenes; reading them reports the latter.
+bool has_medium(const std::string& path, const std::string& name) {
+  if (is_asset_name(path)) return false;
+  try {
+    const auto scene = nlohmann::json::parse(merged_scene(read_scene_text(path), path, {}));
+    return scene.contains("media") && scene.at("media").contains(name);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 }  // namespace
 
-std::vector<std::string> medium_overrides(const std::string& option) {
+std::vector<std::string> medium_overrides(const std::string& scene, const std::string& option) {
   const std::size_t equals = option.rfind('=');
   const std::string medium = option.substr(equals + 1),  // npos + 1 is 0
       shape = equals == option.npos ? "*" : option.substr(0, equals);
   std::vector<std::string> overrides;
-  if (std::ranges::find(presets(), medium, &Preset::name) != presets().end())
+  if (std::ranges::find(presets(), medium, &Preset::name) != presets().end() && !has_medium(scene, medium))
     overrides.push_back(fmt::format("media.{0}.preset={0}", medium));
   overrides.push_back(fmt::format("shapes.{}.medium={}", shape, medium));
   return overrides;

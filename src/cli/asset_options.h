@@ -7,8 +7,8 @@
 
 namespace opaline {
 
-/// "marble": all shapes; "wick=marble": one. A preset becomes a medium of its name.
-std::vector<std::string> medium_overrides(const std::string& option);
+/// "marble": all shapes; "wick=marble": one. A preset becomes a medium of its name, unless the scene file has one.
+std::vector<std::string> medium_overrides(const std::string& scene, const std::string& option);
 
 /// Sets mm_per_unit for shapes of this largest side together, mm. Reads the scene with the overrides.
 /// error as load_scene; Error{bad_input}: there is no shape

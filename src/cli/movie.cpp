@@ -8,79 +8,102 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "opaline/error.h"
+#include "values/frame_name.h"
 
 namespace opaline {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs a program of the path; returns false unless it exits with 0. Messages go to stderr, or nowhere.
-bool succeeds(std::vector<std::string> words, bool is_silent) {
-  posix_spawn_file_actions_t streams;
-  ::posix_spawn_file_actions_init(&streams);
-  ::posix_spawn_file_actions_addopen(&streams, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_addopen(&streams, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  if (is_silent) ::posix_spawn_file_actions_addopen(&streams, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+constexpr const char *kFrame = "frame.######.png", *kList = "frames.txt", *kEncoded = "movie.mp4";
+
+/// Runs a program of the path in a folder; returns false unless it exits with 0. Messages go to stderr, or
+/// nowhere.
+bool succeeds(std::vector<std::string> words, const std::string& folder, bool is_silent) {
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  if (is_silent) ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   pid_t child = 0;
   int status = 1;
-  if (::posix_spawnp(&child, pointers[0], &streams, nullptr, pointers.data(), environ) == 0)
+  if (::posix_spawnp(&child, pointers[0], &actions, nullptr, pointers.data(), environ) == 0)
     ::waitpid(child, &status, 0);
-  ::posix_spawn_file_actions_destroy(&streams);
+  ::posix_spawn_file_actions_destroy(&actions);
   return status == 0;
 }
 
 }  // namespace
 
-std::optional<Movie> take_movie(RenderArguments& arguments) {
+Movie::Movie(std::string path) : path_(std::move(path)), folder_(path_ + ".frames") {}
+
+Movie::~Movie() {
+  std::error_code not_empty;
+  if (!folder_.empty()) fs::remove(folder_, not_empty);
+}
+
+std::optional<Movie> Movie::take(RenderArguments& arguments) {
   const auto output = std::ranges::find(arguments.outputs, OutputFormat::mp4, output_format);
   if (output == arguments.outputs.end()) return {};
-  Movie movie{*output, *output + ".frames"};
-  if (!succeeds({"ffmpeg", "-version"}, true))
-    throw run_failed(movie.path,
+  if (fs::is_directory(*output)) throw run_failed(*output, "cannot write: it is a folder");
+  if (!succeeds({"ffmpeg", "-version"}, ".", true))
+    throw run_failed(*output,
                      "a movie requires the program ffmpeg (Debian: apt-get install ffmpeg); "
                      "images of the frames, as -o out.####.png, do not");
+  { const AtomicFile probe(*output); }
+  Movie movie(*output);
   std::error_code failure;
-  fs::create_directories(movie.folder, failure);
-  if (failure) throw run_failed(movie.folder, "cannot create the folder: " + failure.message());
-  *output = (fs::path(movie.folder) / "frame.######.png").string();
+  fs::create_directory(movie.folder_, failure);
+  if (failure) throw run_failed(movie.folder_, "cannot create the folder: " + failure.message());
+  *output = (fs::path(movie.folder_) / kFrame).string();
   return movie;
 }
 
-void encode(const Movie& movie, int frames_per_second) {
-  const std::string encoded = (fs::path(movie.folder) / "movie.mp4").string();
+void Movie::encode(const std::vector<int>& frames, int frames_per_second) const {
+  const fs::path folder(folder_);
+  std::string list = "ffconcat version 1.0\n";
+  for (const int frame : frames) list += "file " + with_frame(kFrame, frame) + '\n';
+  write_file((folder / kList).string(), list);
   // Chroma has half the resolution, so sides are padded to even numbers.
+  const std::string rate = std::to_string(frames_per_second);
   if (!succeeds({"ffmpeg",
                  "-nostdin",
                  "-y",
                  "-loglevel",
                  "error",
-                 "-framerate",
-                 std::to_string(frames_per_second),
-                 "-pattern_type",
-                 "glob",
+                 "-r",
+                 rate,
+                 "-f",
+                 "concat",
                  "-i",
-                 movie.folder + "/frame.*.png",
+                 kList,
                  "-vf",
                  "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p",
                  "-c:v",
                  "libx264",
                  "-crf",
                  "16",
+                 "-r",
+                 rate,
                  "-movflags",
                  "+faststart",
-                 encoded},
-                false))
-    throw run_failed(movie.path, "ffmpeg failed; the frames are in " + movie.folder);
+                 kEncoded},
+                folder_, false))
+    throw run_failed(path_, "ffmpeg failed; the frames are in " + folder_);
   std::error_code failure;
-  fs::rename(encoded, movie.path, failure);
-  if (failure) throw run_failed(movie.path, "cannot write: " + failure.message());
-  fs::remove_all(movie.folder, failure);
+  fs::rename(folder / kEncoded, path_, failure);
+  if (failure) throw run_failed(path_, "cannot write: " + failure.message());
+  for (const int frame : frames) fs::remove(folder / with_frame(kFrame, frame), failure);
+  fs::remove(folder / kList, failure);
 }
 
 }  // namespace opaline

@@ -376,7 +376,8 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
 }  // namespace
 
 void render_command(RenderArguments arguments) {
-  const std::optional<Movie> movie = take_movie(arguments);
+  const std::vector<std::string> outputs = arguments.outputs;
+  const std::optional<Movie> movie = Movie::take(arguments);
   std::signal(SIGPIPE, SIG_IGN);  // a closed log pipe must not fail the render
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)
@@ -398,9 +399,14 @@ void render_command(RenderArguments arguments) {
   }
   RenderArguments settled =
       arguments.target_error ? settled_for_frames(arguments, cache ? &*cache : nullptr) : arguments;
-  if (arguments.target_error)
+  if (arguments.target_error) {
+    RenderArguments repeated = settled;
+    repeated.outputs = outputs;
+    const std::string rate =
+        arguments.frames_per_second ? fmt::format(" --fps {}", *arguments.frames_per_second) : "";
     print_repeat_command(arguments.log,
-                         command_again(settled) + " --frames " + frames_text(arguments.frames));
+                         command_again(repeated) + rate + " --frames " + frames_text(arguments.frames));
+  }
   anchor_session(session, settled.scene, settled.overrides);
   FramesSoFar so_far;
   settled.log.frames = &so_far;
@@ -408,7 +414,7 @@ void render_command(RenderArguments arguments) {
     return render_scene(arguments_of_frame(settled, frame), session, shared, frame);
   });
   if (!movie) return;
-  encode(*movie, arguments.frames_per_second.value_or(24));
-  print_outputs(arguments.log, "wrote", {movie->path});
+  movie->encode(arguments.frames, arguments.frames_per_second.value_or(24));
+  print_outputs(arguments.log, "wrote", {movie->path()});
 }
 }  // namespace opaline

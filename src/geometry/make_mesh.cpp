@@ -108,7 +108,6 @@ SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs)
     throw bad_file(name, "has textures but no UVs", "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF",
                    "none");
   if (const auto* file = std::get_if<MeshFile>(&shape.source)) {
-    if (file->fit_size) fit(mesh, *file->fit_size, name);
     choose_colors(*file, name, mesh);
     for (int round = 0; round < file->subdivide; ++round) {
       if (mesh.triangles.size() > kMostTriangles / 4)
@@ -117,6 +116,7 @@ SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs)
                        "at most " + grouped(kMostTriangles) + " after subdivision");
       mesh = subdivided(std::move(mesh));
     }
+    if (file->fit_size) fit(mesh, *file->fit_size, name);
     if (file->crease_angle) mesh.smoothing = {{}, *file->crease_angle};
   }
   return mesh;

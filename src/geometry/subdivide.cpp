@@ -85,12 +85,33 @@ void quarter(std::vector<std::array<Value, 3>>& corners, const Mean& mean) {
   corners = std::move(finer);
 }
 
+/// Triangles with fewer than three different corners would make curves of the edges beside them; so would doubles.
+void drop_collapsed_and_duplicates(SourceMesh& mesh) {
+  const std::vector<bool> duplicate = find_duplicates(mesh.triangles);
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    if (a == b || b == c || c == a || duplicate[t]) continue;
+    mesh.triangles[kept] = mesh.triangles[t];
+    if (!mesh.uvs.empty()) mesh.uvs[kept] = mesh.uvs[t];
+    if (!mesh.colors.empty()) mesh.colors[kept] = mesh.colors[t];
+    if (!mesh.tangents.empty()) mesh.tangents[kept] = mesh.tangents[t];
+    ++kept;
+  }
+  mesh.collapsed += mesh.triangles.size() - kept;
+  mesh.triangles.resize(kept);
+  if (!mesh.uvs.empty()) mesh.uvs.resize(kept);
+  if (!mesh.colors.empty()) mesh.colors.resize(kept);
+  if (!mesh.tangents.empty()) mesh.tangents.resize(kept);
+}
+
 }  // namespace
 
 SourceMesh subdivided(SourceMesh mesh) {
   const std::vector<std::uint32_t> site = weld(mesh.positions);
   for (Triangle& triangle : mesh.triangles)
     for (std::uint32_t& v : triangle) v = site[v];
+  drop_collapsed_and_duplicates(mesh);
   Refinement refinement(mesh.positions, mesh.triangles);
   std::vector<Triangle> finer;
   finer.reserve(4 * mesh.triangles.size());

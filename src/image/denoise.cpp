@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <optional>
 #include <vector>
@@ -167,6 +168,7 @@ std::string denoiser_name() {
 void denoise(Image& image, std::span<const std::uint8_t> has_error, Monitor* monitor) {
   if (monitor != nullptr) monitor->begin("denoising", 0);
   const std::optional<std::size_t> color = layer_of(image, "R"), error = layer_of(image, "error.R"),
+                                   variance = layer_of(image, "variance.R"),
                                    albedo = layer_of(image, "albedo.R"), normal = layer_of(image, "N.X");
   const Device device;
   const std::size_t step = image.channels.size(), pixels = image.pixels.size() / step;
@@ -181,8 +183,8 @@ void denoise(Image& image, std::span<const std::uint8_t> has_error, Monitor* mon
         float& value = pixel[*layer + c];
         if (!(value >= 0)) continue;  // a colour outside of Rec.709: the filter knows none
         float change = smooth[3 * i + c] - value;
-        if (is_diffuse && error && i < has_error.size() && has_error[i] != 0) {
-          const float most = 2 * pixel[*error + c];
+        if (is_diffuse && (error || variance) && i < has_error.size() && has_error[i] != 0) {
+          const float most = 2 * (error ? pixel[*error + c] : std::sqrt(std::max(0.f, pixel[*variance + c])));
           change = std::clamp(change, -most, most);
         }
         value += change;

@@ -253,7 +253,7 @@ void drop_replaced_surface(Node& shape) {
 void drop_replaced_lens(Node& camera) {
   using Pair = std::array<std::string_view, 2>;
   for (const Pair& keys : {Pair{"field_of_view", "orthographic_height"}, Pair{"aperture", "f_number"},
-                           Pair{"focus_distance", "focus_point"}}) {
+                           Pair{"orthographic_height", "f_number"}, Pair{"focus_distance", "focus_point"}}) {
     const Node *first = find_member(camera, keys[0]), *second = find_member(camera, keys[1]);
     if (first == nullptr || second == nullptr || first->override_index == second->override_index) continue;
     const std::string_view earlier = first->override_index < second->override_index ? keys[0] : keys[1];

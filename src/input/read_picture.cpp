@@ -36,9 +36,9 @@ void read_lens(const ObjectReader& reader, double mm_per_unit, Camera& camera) {
   allow_one(distance, point);
   if (distance) camera.focus_distance = distance->length(mm_per_unit);
   if (point) {
-    camera.focus_distance =
+    const double depth =
         dot(point->point(mm_per_unit) - camera.position, normalized(camera.look_at - camera.position));
-    if (!(*camera.focus_distance > 0)) point->fail("lies behind the camera", "a point in front of it");
+    if (depth > 0) camera.focus_distance = depth;  // else that of look_at: a free camera may turn away
   }
   if (const auto blades = reader.find("blades")) {
     camera.blades = int(blades->whole_number());

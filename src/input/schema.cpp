@@ -212,7 +212,7 @@ std::vector<KeyInfo> camera_rows() {
       row("camera", "focus_distance", length, "", kFiniteNumber, "that of `look_at`",
           "distance of the plane in focus"),
       row("camera", "focus_point", point, "", kFiniteNumber, "none",
-          "point of the plane in focus, in place of `focus_distance`"),
+          "point of the plane in focus, in place of `focus_distance`; no effect behind the camera"),
       row("camera", "blades", whole_number, "", {0, 100}, "0",
           "blades of the iris, for the shape of blurred highlights; 0: round"),
   };

@@ -75,7 +75,9 @@ struct Seen {
 };
 
 /// At some of the pixels.
-std::vector<Seen> seen_points(const Image& image, const Vec3d& camera) {
+std::vector<Seen> seen_points(const Image& image, const Camera& camera) {
+  std::optional<Vec3d> parallel;  // direction of all rays
+  if (camera.orthographic_height) parallel = camera.look_at - camera.position;
   const std::size_t stride = image.channels.size(), coverage = channel(image, "A");
   const std::array<std::size_t, 3> normal{channel(image, "N.X"), channel(image, "N.Y"),
                                           channel(image, "N.Z")},
@@ -88,7 +90,8 @@ std::vector<Seen> seen_points(const Image& image, const Vec3d& camera) {
     const auto vector = [&](const std::array<std::size_t, 3>& of) {
       return Vec3d(double(pixel[of[0]]), double(pixel[of[1]]), double(pixel[of[2]]));
     };
-    seen.push_back({vector(place), dot(vector(normal), vector(place) - camera) > 0});
+    seen.push_back(
+        {vector(place), dot(vector(normal), parallel.value_or(vector(place) - camera.position)) > 0});
   }
   return seen;
 }
@@ -102,7 +105,7 @@ bool are_mostly_backs(std::span<const Seen> seen) {
 std::string backs_are_seen(const Scene& scene, const World& world, const Image& image) {
   if (std::ranges::none_of(scene.shapes, [](const Shape& shape) { return shape.medium.has_value(); }))
     return {};
-  const std::vector<Seen> seen = seen_points(image, scene.camera.position);
+  const std::vector<Seen> seen = seen_points(image, scene.camera);
   constexpr double kRounding = 1e-4;      // diagonals
   constexpr double kConsiderable = 0.02;  // fraction of the points
   for (std::size_t m = 0; m < world.meshes.size(); ++m) {

@@ -11,11 +11,14 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <future>
 #include <memory>
+#include <stdexcept>
 
 #include "bodies/plan.h"
+#include "core/lower_case.h"
 #include "input/presets.h"
 #include "opaline/opaline.h"
 #include "plan/expected_error.h"
@@ -87,9 +90,17 @@ Floats layer_view(const SharedImage& image, const std::string& name) {
   };
   const std::size_t step = image->channels.size();
   const std::string prefix = name.empty() ? "" : name + '.';
-  std::size_t first = std::min({place(prefix + "R"), place(prefix + "X"), place(name)});
+  const auto has = [&](std::size_t at, const char* rest) {
+    return at < step && image->channels[at] == prefix + rest;
+  };
+  std::size_t first = place(name), count = 1;
+  for (const auto& [a, b, c] : {std::array{"R", "G", "B"}, std::array{"X", "Y", "Z"}})
+    if (const std::size_t at = place(prefix + a); has(at, a) && has(at + 1, b) && has(at + 2, c)) {
+      first = at;
+      count = 3;
+      break;
+    }
   if (first == step) throw nb::key_error(("no layer '" + name + "' in the image").c_str());
-  const std::size_t count = name == image->channels[first] ? 1 : 3;
   const auto height = std::size_t(image->height), width = std::size_t(image->width);
   const auto owner = nb::cast(image);
   const std::size_t shape[] = {height, width, count};
@@ -119,7 +130,9 @@ SharedImage image_of(const nb::ndarray<const float, nb::ndim<3>, nb::c_contig, n
 
 void write_image(const Image& image, const std::string& path, bool half, double exposure,
                  const std::string& view) {
-  const auto is_png = path.ends_with(".png") || path.ends_with(".PNG");
+  const std::string ending = in_lower_case(path.substr(std::max<std::size_t>(path.size(), 4) - 4));
+  const bool is_png = ending == ".png";
+  if (!is_png && ending != ".exr") throw nb::value_error("a name that ends in .exr or .png");
   const auto names = names_of(ViewTransform{});
   const auto found = std::ranges::find(names, view);
   if (found == names.end()) throw nb::value_error("view: soft, neutral, agx or srgb");
@@ -183,12 +196,13 @@ nb::dict plan_of(const Session& session) {
   return result;
 }
 
-/// A session with the text of its scene.
+/// A session with the text of its scene. One thread uses it at a time; others are refused.
 class PythonSession {
  public:
   /// text: a scene file's; none: the file is read, a scene or an asset
   void edit(const std::string& file, const std::optional<std::string>& text,
             const std::vector<std::string>& overrides, int frame) {
+    const Use use(is_used_);
     interruptible([&](Monitor&) {
       session_.edit(text ? parse_scene(*text, file, overrides, frame) : load_scene(file, overrides, frame));
     });
@@ -196,6 +210,7 @@ class PythonSession {
   }
 
   SharedImage render() {
+    const Use use(is_used_);
     RenderResult result = interruptible([&](Monitor& monitor) { return session_.render(&monitor); });
     error_ = estimated_relative_error(result.image, result.translucent);
     return std::make_shared<Image>(std::move(result.image));
@@ -205,6 +220,7 @@ class PythonSession {
 
   nb::ndarray<nb::numpy, float, nb::shape<-1, 3>> exitance(std::size_t body, const Triples<double>& points,
                                                            const Triples<float>& normals) {
+    const Use use(is_used_);
     if (points.shape(0) != normals.shape(0)) throw nb::value_error("one normal is needed for each point");
     std::vector<Vec3d> places(points.shape(0));
     std::vector<Vec3f> directions(points.shape(0));
@@ -223,19 +239,44 @@ class PythonSession {
     return {values->data(), {places.size(), 3}, owner};
   }
 
-  nb::dict plan() const { return plan_of(session_); }
-  std::vector<std::string> decisions() const { return session_.decisions(); }
-  void hold_view(bool hold) { session_.hold_view(hold); }
+  nb::dict plan() {
+    const Use use(is_used_);
+    return plan_of(session_);
+  }
+  std::vector<std::string> decisions() {
+    const Use use(is_used_);
+    return session_.decisions();
+  }
+  void hold_view(bool hold) {
+    const Use use(is_used_);
+    session_.hold_view(hold);
+  }
 
  private:
+  /// Python's lock guards the flag; the work itself runs without the lock.
+  class Use {
+   public:
+    explicit Use(bool& is_used) : is_used_(is_used) {
+      if (is_used_) throw std::runtime_error("the session is in use by another thread");
+      is_used_ = true;
+    }
+    ~Use() { is_used_ = false; }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    bool& is_used_;
+  };
+
   Session session_;
   double error_ = -1;
+  bool is_used_ = false;
 };
 
 void set_threads(int threads) {
   static std::unique_ptr<tbb::global_control> limit;
-  limit.reset();
   if (threads < 0) throw nb::value_error("threads: 0 for one for each core, or more");
+  limit.reset();
   if (threads > 0)
     limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                   std::size_t(threads));

@@ -134,14 +134,22 @@ TEST(CliAssets, HowToMakeMarbleOfIt) {
   EXPECT_TRUE(contains(marble.out, "translucent wood of marble: 5915 mm^2")) << marble.out << marble.err;
 }
 
-// Claim: --medium SHAPE=NAME names one shape and a medium of the scene, --size scales a scene file, too, and --set wins over both. By hand: a
+// Claim: --medium SHAPE=NAME names one shape and a medium of the scene, --size scales a scene file, too, and cannot stand beside a unit; a medium of
+// the scene has precedence over a preset of its name. By hand: a
 // ball of 20 units across at 50 mm has 2.5 mm a unit, 7,854 mm^2. Fails if: lengths are taken for the radius.
 TEST(CliAssets, MediumAndSizeOfAScene) {
   const SceneFolder folder;
   const Outcome sized = run_program({"info", folder.scene, "--size", "5cm", "--medium", "ball=skin1"});
   EXPECT_TRUE(contains(sized.out, "translucent ball of skin1: 785")) << sized.out << sized.err;
-  const Outcome own = run_program({"info", folder.scene, "--size", "5cm", "--set", "mm_per_unit=1"});
-  EXPECT_TRUE(contains(own.out, "translucent ball of marble: 125")) << own.out << own.err;
+  const Outcome both = run_program({"info", folder.scene, "--size", "5cm", "--set", "mm_per_unit=1"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_TRUE(contains(both.err, "--size sets mm_per_unit")) << both.err;
+  std::string scene = bytes_of(folder.scene);
+  scene.replace(scene.find(R"({"preset": "marble"})"), 20, R"({"sigma_a": 1, "sigma_s_prime": 9})");
+  put_bytes(folder.file("own.json"), scene);
+  const Outcome own = run_program({"info", folder.file("own.json"), "--medium", "marble", "--size", "5cm",
+                                   "--set", "media.marble.specular_ior=1.4"});
+  EXPECT_TRUE(contains(own.out, "mean free path 0.1 mm")) << own.out << own.err;
   const Outcome unknown = run_program({"info", folder.scene, "--medium", "marbel"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_TRUE(contains(unknown.err, "marble")) << unknown.err;

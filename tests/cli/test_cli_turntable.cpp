@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 
 #include "opaline/image.h"
@@ -41,10 +42,8 @@ class Ffmpeg {
   std::string before_;
 };
 
-/// Lists its input in the last argument, as if encoded.
-const std::string kListFrames = R"sh(for last; do :; done
-ls "$(dirname "$last")" > "$last.list"; mv "$last.list" "$last"
-)sh";
+/// The list of frames as the movie.
+const std::string kListFrames = "for last; do :; done\ncp frames.txt \"$last\"\n";
 
 // Claim: the frames are those of a camera that circles look_at against `up`, from the scene's own position on. By hand: from (0, 0, 50) about +y
 // a quarter of the turn is (50, 0, 0). Source: the help of turntable. Tolerance: the rounding of half precision. Fails if: the turn is
@@ -97,6 +96,22 @@ TEST(CliTurntable, MoviesAreWholeOrOld) {
   EXPECT_TRUE(contains(bytes_of(folder.file("times")), std::to_string(nanoseconds % 1'000'000'000)));
 }
 
+// Claim: other files in the folder of the frames stay, and frames of another range are no part of the movie; a name with characters
+// of patterns and protocols is one. Fails if: the folder is removed whole, or all that lies in it is encoded.
+TEST(CliTurntable, FoldersKeepOtherFiles) {
+  const SceneFolder folder;
+  const std::string frames = folder.file("a[1]:b.mp4.frames");
+  fs::create_directory(frames);
+  for (const char* name : {"/notes.txt", "/frame.000009.png"}) put_bytes(frames + name, "mine");
+  const Ffmpeg working(folder, kListFrames);
+  const Outcome done = run_program(turn(folder, "a[1]:b.mp4"));
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  const std::string movie = bytes_of(folder.file("a[1]:b.mp4"));
+  EXPECT_TRUE(contains(movie, "frame.000004.png") && !contains(movie, "frame.000009.png")) << movie;
+  EXPECT_EQ(bytes_of(frames + "/notes.txt"), "mine");
+  EXPECT_FALSE(fs::exists(frames + "/frame.000001.png"));
+}
+
 // Claim: `render --frames` writes movies, too; without ffmpeg nothing is rendered, and the message names the program and the other way.
 // Fails if: minutes of work end at a missing program.
 TEST(CliTurntable, MoviesNeedFfmpeg) {
@@ -119,6 +134,7 @@ TEST(CliTurntable, MoviesNeedFfmpeg) {
 // Claim: a movie of one image, with a frame's number in its name, or twice, and a rate without a movie, are bad input. Source: the help.
 TEST(CliTurntable, MistakesAreNamed) {
   const SceneFolder folder;
+  const Ffmpeg working(folder, kListFrames);
   const auto complaint = [&](const std::vector<std::string>& more) {
     std::vector<std::string> line{"render", folder.scene};
     line.insert(line.end(), more.begin(), more.end());
@@ -126,6 +142,10 @@ TEST(CliTurntable, MistakesAreNamed) {
     EXPECT_EQ(refused.exit_code, 2) << refused.err;
     return refused.err;
   };
+  EXPECT_EQ(run_program({"render", folder.file("none.json"), "-o", folder.file("a.mp4"), "--frames", "1-2"})
+                .exit_code,
+            2);
+  EXPECT_FALSE(fs::exists(folder.file("a.mp4.frames")));
   EXPECT_TRUE(contains(complaint({"-o", "a.mp4"}), "a movie requires several frames"));
   EXPECT_TRUE(contains(complaint({"-o", "a.##.mp4", "--frames", "1-2"}), "a name without ##"));
   EXPECT_TRUE(contains(complaint({"-o", "a.mp4", "-o", "b.mp4", "--frames", "1-2"}), "more than one movie"));

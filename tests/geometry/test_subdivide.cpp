@@ -100,6 +100,19 @@ TEST(Subdivide, BordersAreKept) {
     }
 }
 
+// Claim: triangles without area between equal corners, as at poles, and doubles change nothing. Fails if: edges beside them count as borders.
+TEST(Subdivide, DegenerateTrianglesAreIgnored) {
+  SourceMesh dirty = octahedron();
+  dirty.positions.push_back(dirty.positions[0]);
+  dirty.triangles.push_back({0, 6, 2});
+  dirty.triangles.push_back({2, 4, 0});
+  const SourceMesh once = subdivided(dirty), clean = subdivided(octahedron());
+  EXPECT_EQ(once.triangles.size(), clean.triangles.size());
+  EXPECT_EQ(once.positions[0], clean.positions[0]);
+  EXPECT_EQ(open_edges(once), 0u);
+  EXPECT_EQ(once.collapsed, 2u);
+}
+
 // Claim: vertices that are doubled for their normals are one, so that a cube of 24 vertices stays closed. Fails if: faces shrink apart.
 TEST(Subdivide, SeamsOfNormalsAreClosed) {
   SourceMesh split, whole = octahedron();

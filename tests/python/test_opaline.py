@@ -95,6 +95,9 @@ def test_arrays_in_place_of_files():
     assert image.color[image["A"] == 1].mean(axis=0) == pytest.approx([.6] * 3, rel=.01)
     session.set({"shapes.gem.file": str(session._file(".ply", [positions, triangles], None))})
     assert np.array_equal(session.render().array, image.array)
+    before = set(os.listdir(session._folder.name))
+    session.edit(scene | {"shapes": [{"name": "gem", "mesh": (2 * positions, triangles)}]})
+    assert len(set(os.listdir(session._folder.name)) - before) == 1 and len(os.listdir(session._folder.name)) == 2
     with pytest.raises(ValueError, match="triangles name positions 0 to 5"):
         opaline.write_ply("unused.ply", positions, np.array([[0, 1, 6]]))
 
@@ -125,8 +128,13 @@ def test_errors_name_their_place(tmp_path):
         session.set({"shapes.bal.medium": "stone"})
     with pytest.raises(opaline.RunFailed):
         session.render().write("/nowhere/a.exr")
-    with pytest.raises(ValueError):
-        opaline.Session().render()
+    for call in ("render", "plan"):
+        with pytest.raises(ValueError, match="no scene yet"):
+            getattr(opaline.Session(), call)()
+    with pytest.raises(ValueError, match="no scene yet"):
+        opaline.Session().radiant_exitance(0, np.zeros((1, 3)), np.zeros((1, 3)))
+    with pytest.raises(ValueError, match=".exr or .png"):
+        session.render().write(str(tmp_path / "a.jpg"))
 
 
 def test_other_threads_go_on_and_ctrl_c_ends():
@@ -154,6 +162,19 @@ def test_other_threads_go_on_and_ctrl_c_ends():
     assert session.render().width == 8
 
 
+def test_one_thread_at_a_time():
+    """Claim: a session that renders in another thread refuses to be used, and works afterwards. Fails if: both go on, and crash."""
+    session = opaline.Session(BALL, {"film.resolution": [256, 256], "settings.method": "direct"})
+    thread = threading.Thread(target=session.render)
+    thread.start()
+    time.sleep(.2)
+    with pytest.raises(RuntimeError, match="in use by another thread"):
+        session.set({"lights.key.intensity": 5})
+    thread.join()
+    session.set({"film.resolution": [8, 8], "settings.method": "lambert"})
+    assert session.render().width == 8
+
+
 def test_arrays_as_images():
     """Claim: an image of an array has its values, and compare gives errors of hand: 10 % everywhere."""
     ones = np.ones((4, 5, 3), np.float32)
@@ -164,3 +185,6 @@ def test_arrays_as_images():
     assert "marble" in opaline.presets()
     with pytest.raises(ValueError):
         opaline.image(ones, ["R"])
+    for channels in (["B", "G", "R"], ["R", "G", "Z"]):
+        with pytest.raises(KeyError):
+            opaline.image(ones, channels).color

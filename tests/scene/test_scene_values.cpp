@@ -40,6 +40,8 @@ TEST(SceneValues, Lenses) {
   EXPECT_FALSE(camera("").focus_distance);
   EXPECT_EQ(camera(R"("focus_distance": 7)").focus_distance, 70);
   EXPECT_NEAR(*camera(R"("focus_point": [3, 0, 1])").focus_distance, 40, 1e-12);
+  EXPECT_FALSE(camera(R"("focus_point": [0, 0, 6])").focus_distance);  // behind
+  EXPECT_EQ(camera(R"("f_number": 2)", {"camera.orthographic_height=2"}).aperture, 0);
   EXPECT_EQ(camera(R"("orthographic_height": 2)").orthographic_height, 20);
   const Camera replaced =
       camera(R"("field_of_view": 30, "aperture": 1, "focus_distance": 2)",

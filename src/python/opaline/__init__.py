@@ -11,6 +11,8 @@ A scene is a path of a scene file or asset, or a dict as in a scene file (scenes
 arrays may stand for files: `"mesh": (positions, triangles)` in a shape (float N x 3, int M x 3), and height x
 width x 3 for the `file` of an environment or the `texture` of a value.
 """
+from __future__ import annotations  # Session.set is no type
+
 import hashlib
 import json
 import os
@@ -33,6 +35,8 @@ def write_ply(path: str, positions: np.ndarray, triangles: np.ndarray) -> None:
     corners = np.asarray(triangles)
     if places.ndim != 2 or places.shape[1] != 3 or corners.ndim != 2 or corners.shape[1] != 3:
         raise ValueError("a mesh is (positions N x 3, triangles M x 3)")
+    if not np.issubdtype(corners.dtype, np.integer):
+        raise ValueError("triangles are integers")
     if corners.size and (corners.min() < 0 or corners.max() >= len(places)):
         raise ValueError(f"triangles name positions 0 to {len(places) - 1}")
     faces = np.empty(len(corners), np.dtype([("count", "u1"), ("corners", "<i4", 3)]))
@@ -41,8 +45,9 @@ def write_ply(path: str, positions: np.ndarray, triangles: np.ndarray) -> None:
     header = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(places)}\n"
               "property double x\nproperty double y\nproperty double z\n"
               f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
-    with open(path, "wb") as file:
+    with open(f"{path}.part", "wb") as file:
         file.write(header.encode() + places.tobytes() + faces.tobytes())
+    os.replace(f"{path}.part", path)
 
 
 class Session:
@@ -56,6 +61,8 @@ class Session:
         self._scene: tuple[str, str | None] | None = None
         self._overrides: dict[str, Any] = {}
         self._frame = frame
+        self._files: set[str] = set()  # of arrays in the scene, and while walking
+        self._scene_files: set[str] = set()
         if scene is not None:
             self.edit(scene, overrides, frame)
 
@@ -65,23 +72,23 @@ class Session:
 
         Raises BadInput, with the place in the file and the expected value; the session then keeps its scene.
         """
+        self._files = set()
         if isinstance(scene, Mapping):
             given = ("scene.json", json.dumps(self._with_files(scene)))
         else:
             given = (os.fspath(scene), None)
-        self._apply(given, dict(overrides), frame)
+        self._apply(given, set(self._files), dict(overrides), frame)
 
     def set(self, overrides: Mapping[str, Any], frame: int | None = None) -> None:
         """Changes values of the scene, beside the changes before. Raises as edit."""
-        if self._scene is None:
-            raise ValueError("the session has no scene yet")
+        self._require_scene()
         values = {key: value for key, value in self._overrides.items() if key not in overrides}
-        self._apply(self._scene, values | dict(overrides), self._frame if frame is None else frame)
+        self._apply(self._scene, self._scene_files, values | dict(overrides),
+                    self._frame if frame is None else frame)
 
     def render(self) -> Image:
         """The image. Ctrl-C ends it with KeyboardInterrupt; other threads of Python go on meanwhile."""
-        if self._scene is None:
-            raise ValueError("the session has no scene yet")
+        self._require_scene()
         return self._session.render()
 
     @property
@@ -91,6 +98,7 @@ class Session:
 
     def plan(self) -> dict[str, Any]:
         """Stages, samples, memory, warnings and expected model error; for each body its method."""
+        self._require_scene()
         return self._session.plan()
 
     @property
@@ -100,6 +108,7 @@ class Session:
 
     def radiant_exitance(self, body: int, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
         """W/mm^2 at points on a translucent body's surface: N x 3. points in mm, unit normals outwards."""
+        self._require_scene()
         return self._session.radiant_exitance(body, np.ascontiguousarray(points, np.float64),
                                               np.ascontiguousarray(normals, np.float32))
 
@@ -107,10 +116,18 @@ class Session:
         """Keeps camera rays and their light, so that edits of colours and media trace none; takes memory."""
         self._session.hold_view(hold)
 
-    def _apply(self, scene: tuple[str, str | None], overrides: dict[str, Any], frame: int) -> None:
+    def _require_scene(self) -> None:
+        if self._scene is None:
+            raise ValueError("the session has no scene yet")
+
+    def _apply(self, scene: tuple[str, str | None], scene_files: set[str], overrides: dict[str, Any],
+               frame: int) -> None:
+        self._files = set(scene_files)
         texts = [f"{key}={json.dumps(self._with_files(value))}" for key, value in overrides.items()]
         self._session.edit(scene[0], scene[1], texts, frame)
-        self._scene, self._overrides, self._frame = scene, overrides, frame
+        self._scene, self._scene_files, self._overrides, self._frame = scene, scene_files, overrides, frame
+        for name in set(os.listdir(self._folder.name)) - {os.path.basename(path) for path in self._files}:
+            os.remove(os.path.join(self._folder.name, name))  # of arrays replaced since
 
     def _with_files(self, value: Any) -> Any:
         """The value with files for its arrays, named by their content, so that equal arrays change nothing."""
@@ -141,6 +158,7 @@ class Session:
         path = os.path.join(self._folder.name, content.hexdigest()[:32] + ending)
         if not os.path.exists(path):
             write(path)
+        self._files.add(path)
         return path
 
 
