@@ -164,7 +164,7 @@ def test_other_threads_go_on_and_ctrl_c_ends():
 
 def test_one_thread_at_a_time():
     """Claim: a session that renders in another thread refuses to be used, and works afterwards. Fails if: both go on, and crash."""
-    session = opaline.Session(BALL, {"film.resolution": [256, 256], "settings.method": "direct"})
+    session = opaline.Session(BALL, {"film.resolution": [128, 128], "settings.method": "direct"})
     thread = threading.Thread(target=session.render)
     thread.start()
     time.sleep(.2)
