@@ -55,7 +55,7 @@ struct ViewFolder : ScratchFolder {
   ],
   "camera": {"position": [0, 30, 120], "look_at": [0, 8, 0], "field_of_view": 32},
   "film": {"resolution": [48, 32]},
-  "settings": {"light_samples": 4}
+  "settings": {"light_samples": 4, "max_samples": 2000}
 })");
   }
 };
