@@ -53,7 +53,7 @@ even the cheapest image exceeds the budget, opaline renders it and a warning sta
 not. With --method direct, opaline stops when the budget ends.)";
 
 inline constexpr const char* kTurntableNotes =
-    R"(The camera circles its look_at once, counter-clockwise seen from above (against its `up`); the lights stay with the
+    R"(The camera circles its look_at once, counter-clockwise seen from above; camera.up is the axis. The lights stay with the
 scene. All frames share the light at the samples, so a frame costs little more than with lambert. A repeated command
 skips the frames that exist. A movie is encoded by ffmpeg (H.264); until it is complete, its frames are in a folder
 beside it, FILE.mp4.frames.

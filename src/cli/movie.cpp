@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr const char *kFrame = "frame.######.png", *kList = "frames.txt", *kEncoded = "movie.mp4";
 
-/// Runs a program of the path in a folder; returns false unless it exits with 0. Messages go to stderr, or
-/// nowhere.
+/// Runs a program found in PATH, in this folder; returns false unless it exits with 0. Its messages go to stderr
+/// unless it is silent.
 bool succeeds(std::vector<std::string> words, const std::string& folder, bool is_silent) {
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);

@@ -49,7 +49,7 @@ void print_repeat_command(const Log& log, const std::string& command);
 void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,
                   const Settings& settings);
 
-/// Prints the existing images of a skipped frame.
+/// Prints names of files: a row each, or one event of this name.
 void print_outputs(const Log& log, const char* event, const std::vector<std::string>& outputs);
 
 /// Standard error of a light's irradiance, over its mean (LightTransfer::relative_error).

@@ -160,9 +160,12 @@ std::vector<float> filtered(const Device& device, Image& image, std::size_t laye
 }  // namespace
 
 std::string denoiser_name() {
-  const Device device;
-  return fmt::format("Open Image Denoise {}.{}.{}", device.value("versionMajor"),
-                     device.value("versionMinor"), device.value("versionPatch"));
+  static const std::string name = [] {
+    const Device device;
+    return fmt::format("Open Image Denoise {}.{}.{}", device.value("versionMajor"),
+                       device.value("versionMinor"), device.value("versionPatch"));
+  }();
+  return name;
 }
 
 void denoise(Image& image, std::span<const std::uint8_t> has_error, Monitor* monitor) {
@@ -181,7 +184,7 @@ void denoise(Image& image, std::span<const std::uint8_t> has_error, Monitor* mon
       float* const pixel = image.pixels.data() + i * step;
       for (std::size_t c = 0; c < 3; ++c) {
         float& value = pixel[*layer + c];
-        if (!(value >= 0)) continue;  // a colour outside of Rec.709: the filter knows none
+        if (!(value >= 0)) continue;  // a colour outside Rec.709, clamped by the filter
         float change = smooth[3 * i + c] - value;
         if (is_diffuse && (error || variance) && i < has_error.size() && has_error[i] != 0) {
           const float most = 2 * (error ? pixel[*error + c] : std::sqrt(std::max(0.f, pixel[*variance + c])));

@@ -10,15 +10,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> step_names{"translate", "scale", "rotate", "matrix"};
 
-/// Rodrigues' rotation, counter-clockwise seen against the axis.
-Transform rotation(const Vec3d& axis, double degrees) {
-  const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
-  const auto turned = [&](const Vec3d& v) {
-    return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1 - c));
-  };
-  return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1}), {}};
-}
-
 Transform read_rotation(const Value& value) {
   const ObjectReader reader(value, "shape.transform.rotate");
   const Value axis = reader.need("axis");
@@ -58,6 +49,14 @@ Transform read_step(const Value& value, double mm_per_unit) {
 }
 
 }  // namespace
+
+Transform rotation(const Vec3d& axis, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+  const auto turned = [&](const Vec3d& v) {
+    return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1 - c));
+  };
+  return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1}), {}};
+}
 
 Transform read_transform(const Value& value, double mm_per_unit) {
   Transform total;

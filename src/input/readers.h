@@ -57,6 +57,11 @@ Camera read_camera(const std::optional<Value>& value, double mm_per_unit);
 Film read_film(const Value& value);
 Settings read_settings(const Value& value, double mm_per_unit);
 
+/// Rotation about an axis through the origin, counter-clockwise when the axis points towards the viewer.
+/// in    axis: unit
+/// from  Rodrigues' formula
+Transform rotation(const Vec3d& axis, double degrees);
+
 /// Reads a list of steps, applied in order.
 Transform read_transform(const Value& value, double mm_per_unit);
 

@@ -60,8 +60,8 @@ TEST(CliDenoise, KeepsEmissionAndKnownLight) {
   }
 }
 
-// Claim: colours outside of Rec.709 stay, which the filter does not know; a cancelled filter is an interruption, and the library's
-// message is told. Fails if: negative channels of spectra become 0.
+// Claim: negative channels (colours outside Rec.709) stay unchanged. Cancelling throws Error{interrupted}, and an error of the library
+// appears with its message. Fails if: negative values become 0.
 TEST(CliDenoise, ExtremesOfTheFilter) {
   const Denoiser denoiser;
   Image image = noisy();

@@ -45,7 +45,7 @@ class Ffmpeg {
 /// The list of frames as the movie.
 const std::string kListFrames = "for last; do :; done\ncp frames.txt \"$last\"\n";
 
-// Claim: the frames are those of a camera that circles look_at against `up`, from the scene's own position on. By hand: from (0, 0, 50) about +y
+// Claim: the camera circles look_at about `up`, counter-clockwise seen from above, from the scene's own position on. By hand: from (0, 0, 50) about +y
 // a quarter of the turn is (50, 0, 0). Source: the help of turntable. Tolerance: the rounding of half precision. Fails if: the turn is
 // clockwise, or begins one step on.
 TEST(CliTurntable, CirclesTheScene) {

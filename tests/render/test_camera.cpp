@@ -155,7 +155,7 @@ TEST(Camera, BladesFormAPolygon) {
   }
 }
 
-// Claim: pixels see different places of the lens first: with one ray a pixel the image is noisy, not displaced. Tolerance: the mean of
+// Claim: the first rays of different pixels pass different points of the lens: with one ray per pixel the image is noisy, not displaced. Tolerance: the mean of
 // 3,072 uniform points. Fails if: all pixels share one place.
 TEST(Camera, PixelsRotateTheLens) {
   const CameraRays rays(with_lens(2 * kUnit, 50), film_of(1), far_world());
