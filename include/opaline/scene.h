@@ -194,6 +194,13 @@ void for_each_textured(const Medium& medium, const Visit& visit) {
 
 // ---- shapes ---------------------------------------------------------------------------------------------
 
+/// A time of an animated asset.
+struct AnimationTime {
+  std::string animation{};  ///< name, or index; empty: the first
+  double seconds = 0;
+  friend bool operator==(const AnimationTime&, const AnimationTime&) = default;
+};
+
 struct MeshFile {
   std::string path;  ///< as opened: the scene file's folder precedes a relative path
   /// Closes every hole before rendering, or none. Unset: closes those of a translucent mesh if all are small.
@@ -208,6 +215,8 @@ struct MeshFile {
   std::optional<bool> vertex_colors{};
   /// Without normals: edges with a larger angle are creases, degrees, [0, 180]; none: by the file.
   std::optional<double> crease_angle{};
+  /// Pose of a glTF asset; its part is then in the asset's space. None: at rest.
+  std::optional<AnimationTime> pose{};
   int subdivide = 0;  ///< rounds of Loop subdivision, each with 4 times as many triangles; 0 to kMostRounds
   static constexpr int kMostRounds = 6;
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
@@ -277,6 +286,8 @@ struct Shape {
   std::optional<Texture> bump_map{};             ///< heights; its scale is in mm
   std::optional<Gloss> gloss{};                  ///< specular reflection of an opaque shape; none: diffuse
   Fuzz fuzz{};                                   ///< fuzz of an opaque shape
+  bool is_seen = true;                           ///< visible to camera rays
+  bool catches_shadows = false;                  ///< opaque; visible as shadows alone, in alpha
   friend bool operator==(const Shape&, const Shape&) = default;
 };
 
@@ -449,6 +460,8 @@ struct Scene {
   Camera camera;
   Film film;
   Settings settings;
+  /// Radiance behind all shapes, visible to camera rays alone; none: that of surroundings and environments.
+  std::optional<Rgb> backdrop{};
   /// Frames from the first key of the camera or film to the last, if nothing else is keyed: images of the
   /// same surfaces under the same light; otherwise 1.
   std::size_t camera_frames = 1;

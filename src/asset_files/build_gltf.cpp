@@ -8,9 +8,10 @@ namespace opaline {
 namespace {
 
 constexpr int kMostDepth = 128;
-constexpr std::array<std::string_view, 5> kLazyLists{"materials", "cameras", "skins", "images", "textures"};
-constexpr std::array<std::string_view, 7> kReadLists{"buffers", "bufferViews", "accessors", "meshes",
-                                                     "nodes",   "scenes",      "animations"};
+constexpr std::array<std::string_view, 6> kLazyLists{"materials", "cameras",  "skins",
+                                                     "images",    "textures", "animations"};
+constexpr std::array<std::string_view, 6> kReadLists{"buffers", "bufferViews", "accessors",
+                                                     "meshes",  "nodes",       "scenes"};
 
 bool contains(const auto& list, std::string_view name) {
   return std::ranges::find(list, name) != list.end();
@@ -63,18 +64,19 @@ GltfMesh read_mesh(const GltfRecord& record) {
   return mesh;
 }
 
-Transform read_transform(const GltfRecord& record) {
+std::variant<GltfPlacement, Transform> read_placement(const GltfRecord& record) {
   const std::vector<double> m = record.numbers("matrix", 16), q = record.numbers("rotation", 4),
                             s = record.numbers("scale", 3), p = record.numbers("translation", 3);
-  if (!m.empty()) return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
-  Transform t;
+  if (!m.empty())
+    return Transform{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+  GltfPlacement placement;
   if (!q.empty()) {
     if (q == std::vector<double>(4)) record.fail("rotation", "is not a rotation", "a nonzero quaternion");
-    t = rotation({q[0], q[1], q[2], q[3]});
+    placement.rotation = {q[0], q[1], q[2], q[3]};
   }
-  if (!s.empty()) t.x *= s[0], t.y *= s[1], t.z *= s[2];
-  if (!p.empty()) t.translation = {p[0], p[1], p[2]};
-  return t;
+  if (!s.empty()) placement.scale = {s[0], s[1], s[2]};
+  if (!p.empty()) placement.translation = {p[0], p[1], p[2]};
+  return placement;
 }
 
 class GltfBuilder {
@@ -126,12 +128,13 @@ class GltfBuilder {
     if (list_ == "meshes") gltf_.meshes.push_back(read_mesh(record));
     if (list_ == "nodes") take_node(index, record);
     if (list_ == "scenes") gltf_.scenes.push_back(record.indices("nodes"));
-    if (list_ == "animations") ++gltf_.animations;
   }
 
   void take_node(std::size_t index, const GltfRecord& record) {
     const GltfRecord extensions = record.record("extensions");
-    const Transform placed = read_transform(record);
+    std::variant<GltfPlacement, Transform> placed = read_placement(record);
+    const bool is_placed =
+        record.has("matrix") || record.has("rotation") || record.has("scale") || record.has("translation");
     gltf_.nodes.push_back(
         {.name = record.text("name"),
          .mesh = record.index("mesh"),
@@ -139,7 +142,8 @@ class GltfBuilder {
          .skin = record.index("skin"),
          .light = extensions.record("KHR_lights_punctual").index("light"),
          .children = record.indices("children"),
-         .placed = placed == Transform{} ? nullptr : std::make_unique<const Transform>(placed)});
+         .placed =
+             is_placed ? std::make_unique<const std::variant<GltfPlacement, Transform>>(placed) : nullptr});
     if (record.has("weights")) gltf_.node_weights[index] = record.numbers("weights");
     if (extensions.has("EXT_mesh_gpu_instancing"))
       gltf_.instances[index] =

@@ -163,6 +163,14 @@ auto read_elements(const GltfModel& gltf, std::uint32_t index, std::string_view 
 
 }  // namespace
 
+std::vector<double> read_numbers(const GltfModel& gltf, std::uint32_t index, std::size_t components) {
+  return AccessorReader(gltf, index)
+      .run(components == 1   ? "SCALAR"
+           : components == 3 ? "VEC3"
+                             : "VEC4",
+           components);
+}
+
 std::vector<Vec3d> read_vectors(const GltfModel& gltf, std::uint32_t index) {
   return read_elements<3>(gltf, index, "VEC3", [](const double* v) { return Vec3d(v[0], v[1], v[2]); });
 }

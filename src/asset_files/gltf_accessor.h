@@ -28,6 +28,9 @@ std::vector<Transform> read_matrices(const GltfModel& gltf, std::uint32_t index)
 /// The same of unsigned scalars.
 std::vector<std::uint32_t> read_indices(const GltfModel& gltf, std::uint32_t index);
 
+/// The numbers of SCALAR, VEC3 or VEC4, by their components.
+std::vector<double> read_numbers(const GltfModel& gltf, std::uint32_t index, std::size_t components);
+
 /// error Error{bad_input}: the accessor has integers, and the file does not declare KHR_mesh_quantization
 void check_positions_type(const GltfModel& gltf, std::uint32_t index);
 

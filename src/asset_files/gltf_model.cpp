@@ -9,6 +9,7 @@
 
 #include "asset_files/asset_file.h"
 #include "asset_files/build_gltf.h"
+#include "asset_files/gltf_animation.h"
 #include "asset_files/gltf_file.h"
 
 #define XXH_INLINE_ALL
@@ -243,13 +244,32 @@ Transform rotation(const std::array<double, 4>& quaternion) {
           {}};
 }
 
-Transform node_to_world(const GltfModel& gltf, std::size_t node) {
-  Transform to_world = gltf.nodes[node].to_parent();
+Transform GltfPlacement::to_parent() const {
+  Transform t = opaline::rotation(rotation);
+  t.x *= scale.x, t.y *= scale.y, t.z *= scale.z;
+  t.translation = translation;
+  return t;
+}
+
+Transform GltfNode::to_parent() const {
+  if (!placed) return {};
+  const auto* placement = std::get_if<GltfPlacement>(placed.get());
+  return placement != nullptr ? placement->to_parent() : std::get<Transform>(*placed);
+}
+
+Transform node_to_world(const GltfModel& gltf, std::size_t node, const GltfState* state) {
+  const auto to_parent = [&](std::size_t at) {
+    if (state != nullptr)
+      if (const auto moved = state->placed.find(std::uint32_t(at)); moved != state->placed.end())
+        return moved->second;
+    return gltf.nodes[at].to_parent();
+  };
+  Transform to_world = to_parent(node);
   std::size_t steps = 0;
   for (std::uint32_t at = gltf.nodes[node].parent; at != kNoRecord; at = gltf.nodes[at].parent) {
     if (++steps > gltf.nodes.size())
       fail_at(gltf.path, record_name("nodes", node), "has two parents, or is its own", "a tree of nodes");
-    to_world = compose(gltf.nodes[at].to_parent(), to_world);
+    to_world = compose(to_parent(at), to_world);
   }
   return to_world;
 }

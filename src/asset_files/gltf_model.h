@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "asset_files/asset_bytes.h"
@@ -54,14 +55,23 @@ struct GltfMesh {
   std::vector<double> weights;  ///< weights of morph targets
 };
 
+/// Translation, rotation and scale of a node in its parent.
+struct GltfPlacement {
+  Vec3d translation{};
+  std::array<double, 4> rotation{0, 0, 0, 1};  ///< quaternion x, y, z, w
+  Vec3d scale{1};
+
+  Transform to_parent() const;
+};
+
 struct GltfNode {
   std::string name{};
   std::uint32_t mesh = kNoRecord, camera = kNoRecord, skin = kNoRecord, light = kNoRecord;
   std::uint32_t parent = kNoRecord;
   std::vector<std::uint32_t> children{};
-  std::unique_ptr<const Transform> placed{};  ///< transform in its parent; null: identity
+  std::unique_ptr<const std::variant<GltfPlacement, Transform>> placed{};  ///< in its parent; null: identity
 
-  Transform to_parent() const { return placed ? *placed : Transform{}; }
+  Transform to_parent() const;
 };
 
 struct GltfModel {
@@ -80,7 +90,6 @@ struct GltfModel {
   std::vector<std::vector<std::uint32_t>> scenes;           ///< their roots
   std::uint32_t scene = kNoRecord;                          ///< to be shown
   std::vector<std::string> extensions_used, extensions_required;
-  std::size_t animations = 0;
   std::size_t record_bytes = 0;  ///< memory of the text and its nodes
   /// Lists of records read on use: an error in an unused one is not reported.
   std::map<std::string, std::vector<Json>, std::less<>> lists;
@@ -104,9 +113,12 @@ inline std::string_view bytes_of(const GltfModel& gltf, const GltfBufferView& vi
   return gltf.buffers[view.buffer].substr(view.offset, view.length);
 }
 
+struct GltfState;
+
 /// Transform of a node to its scene.
+/// in    state: of an animation; null: at rest
 /// error Error{bad_input}: it is its own parent
-Transform node_to_world(const GltfModel& gltf, std::size_t node);
+Transform node_to_world(const GltfModel& gltf, std::size_t node, const GltfState* state = nullptr);
 
 /// Rotation by a quaternion x, y, z, w of any nonzero length.
 Transform rotation(const std::array<double, 4>& quaternion);

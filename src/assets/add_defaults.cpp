@@ -64,7 +64,8 @@ struct ViewFrame {
 /// looks along up.
 ViewFrame view_frame(const AssetScene& scene) {
   const Vec3d up{0, 1, 0};
-  Vec3d towards = vector_of(scene.camera["position"]) - scene.center;
+  const Json& position = scene.camera["position"];
+  Vec3d towards = vector_of(position.is_object() ? *position["keyed"].begin() : position) - scene.center;
   constexpr double kNear = .01;  // fraction of the asset's radius, or of a right angle
   if (!(length(cross(up, towards)) > kNear * std::max(length(towards), scene.radius)))
     towards = default_view();

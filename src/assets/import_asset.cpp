@@ -64,7 +64,8 @@ void replace_materials(AssetScene& scene, const std::string& material, const Ass
   if (!surface.medium.is_null()) scene.media[name] = surface.medium;
   for (Json& shape : scene.shapes) {
     Json bare = Json::object();
-    for (const char* key : {"name", "file", "part", "transform", "normals", "vertex_colors"})
+    for (const char* key :
+         {"name", "file", "part", "animation_time", "transform", "normals", "vertex_colors"})
       if (shape.contains(key)) bare[key] = shape[key];
     shape = std::move(bare);
     if (scene.has_vertex_colors) shape["vertex_colors"] = false;

@@ -6,8 +6,10 @@
 #include <map>
 
 #include "asset_files/gltf_accessor.h"
+#include "asset_files/gltf_animation.h"
 #include "assets/asset_scene.h"
 #include "assets/gltf_material.h"
+#include "assets/gltf_motion.h"
 #include "assets/gltf_view.h"
 #include "geometry/formats/gltf_pose.h"
 #include "geometry/formats/gltf_triangles.h"
@@ -81,6 +83,7 @@ class GltfImporter {
     scene_.mm_per_unit = 1000;
     scene_.translated.push_back("lengths in metres -> mm_per_unit 1000");
     for (const std::string& warning : gltf_.warnings) scene_.warn(gltf_.path, warning);
+    choose_animation();
     const std::vector<PlacedNode> nodes = NodeWalk(gltf_).run(roots());
     for (const PlacedNode& node : nodes) add_meshes(node);
     if (scene_.shapes.empty())
@@ -88,8 +91,16 @@ class GltfImporter {
                      "a scene with a node that has a mesh of triangles",
                      scene_.warnings.empty() ? "" : scene_.not_carried.back());
     enclose(scene_, [&](const auto& visit) { for_each_point(visit); });
-    for (const PlacedNode& node : nodes) add_camera(gltf_, node.index, node.to_world, scene_);
-    for (const PlacedNode& node : nodes) add_light(gltf_, node.index, node.to_world, light_names_, scene_);
+    for (const PlacedNode& node : nodes) {
+      const bool had_camera = !scene_.camera.is_null();
+      add_camera(gltf_, node.index, node.to_world, scene_);
+      if (!had_camera && !scene_.camera.is_null() && motion_) motion_->add_to(scene_.camera, node.index);
+    }
+    for (const PlacedNode& node : nodes) {
+      const std::size_t lights = scene_.lights.size();
+      add_light(gltf_, node.index, node.to_world, light_names_, scene_);
+      if (scene_.lights.size() > lights && motion_) motion_->add_to(scene_.lights.back(), node.index);
+    }
     tell_losses();
     return std::move(scene_);
   }
@@ -98,7 +109,25 @@ class GltfImporter {
   struct PlacedPart {
     std::string part;
     Transform to_world;
+    bool is_moving;
   };
+
+  /// The first readable one.
+  void choose_animation() {
+    for (std::size_t i = 0; i < gltf_.count("animations") && !motion_; ++i) try {
+        motion_.emplace(gltf_, i);
+      } catch (const Error& failure) {
+        scene_.warn(gltf_.path, fmt::format("animation '{}': ignored, it cannot be read: {}",
+                                            animation_name(gltf_, i), failure.what()));
+      }
+    if (motion_ && motion_->is_empty()) motion_.reset();
+    if (!motion_) return;
+    scene_.translated.push_back("animation " + in_quotes(motion_->name()) + " -> " + motion_->frames_text());
+    for (std::size_t i = 0; i < gltf_.count("animations"); ++i)
+      if (i != motion_->index())
+        scene_.not_carried.push_back("animation " + in_quotes(animation_name(gltf_, i)) +
+                                     ": uses the first one; the key \"animation\" selects another");
+  }
 
   /// Roots of the default scene, or the first; without scenes all nodes without a parent.
   std::vector<std::uint32_t> roots() {
@@ -121,6 +150,8 @@ class GltfImporter {
     const std::string label =
         node.name.empty() ? record_name("nodes", placed.index) : "node " + in_quotes(node.name);
     tell_mesh_losses(node.mesh);
+    if (motion_ && motion_->moves(std::uint32_t(placed.index)) && gltf_.instances.contains(placed.index))
+      scene_.warn(gltf_.path, label + ": its instances stand still; animation of instances is not supported");
     const std::vector<Transform> all = instances(placed.index);
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t p = 0; p < gltf_.meshes[node.mesh].primitives.size(); ++p)
@@ -167,15 +198,17 @@ class GltfImporter {
     const GltfNode& node = gltf_.nodes[placed.index];
     const GltfMesh& mesh = gltf_.meshes[node.mesh];
     const GltfPrimitive& primitive = mesh.primitives[p];
-    const bool skinned = is_skinned(gltf_, placed.index, primitive);
-    const Transform t = skinned ? Transform{} : placed.to_world;
+    const bool skinned = is_skinned(gltf_, placed.index, primitive),
+               is_moving = is_animated(placed.index, primitive);
+    const Transform t = skinned || is_moving ? Transform{} : placed.to_world;
     if (!(std::abs(dot(normalized(t.x), cross(normalized(t.y), normalized(t.z)))) > 1e-12))
       return scene_.warn(gltf_.path, label + ": its transform is singular; the mesh is ignored" +
                                          zero_scale_text(placed.index));
     std::string part = fmt::format("{}/{}", node.mesh, p);
-    if (is_posed(gltf_, placed.index, primitive)) part += fmt::format("/{}", placed.index);
+    if (is_moving || is_posed(gltf_, placed.index, primitive)) part += fmt::format("/{}", placed.index);
     const std::string name = shape_names_.take(node.name.empty() ? mesh.name : node.name, "shape");
     Json shape{{"name", name}, {"file", mesh_path_}, {"part", part}};
+    if (is_moving) motion_->add_to_shape(shape);
     if (t != Transform{}) {
       Json rows = Json::array();
       for (std::size_t i = 0; i < 3; ++i) rows.push_back({t.x[i], t.y[i], t.z[i], t.translation[i]});
@@ -189,11 +222,21 @@ class GltfImporter {
                           mesh_path_};
     add_surface(shape, use, placed, mesh.primitives.size() > 1);
     scene_.shapes.push_back(std::move(shape));
-    parts_.push_back({part, t});
+    parts_.push_back({part, t, is_moving});
     scene_.translated.push_back(fmt::format(
         "{}, part {} of the asset -> shape {}{}{}", label, part, in_quotes(name),
-        skinned ? ", by its skin, joints at rest" : "",
+        is_moving ? ", animated"
+        : skinned ? ", by its skin, joints at rest"
+                  : "",
         is_faceted ? ", faceted: it has no normals (\"normals\": \"smooth\" computes them)" : ""));
+  }
+
+  bool is_animated(std::size_t node, const GltfPrimitive& primitive) const {
+    return motion_ && !gltf_.instances.contains(node) &&
+           (is_skinned(gltf_, node, primitive)
+                ? motion_->moves_skin(gltf_.nodes[node].skin)
+                : motion_->moves(std::uint32_t(node)) ||
+                      (!primitive.targets.empty() && motion_->changes_weights(std::uint32_t(node))));
   }
 
   /// Primitives of one node with the same medium are one body.
@@ -260,17 +303,18 @@ class GltfImporter {
 
   template <class Visit>
   void for_each_point(const Visit& visit) const {
-    for (const PlacedPart& placed : parts_) {
-      const GltfPart part = read_gltf_part(gltf_, placed.part);
-      for (const auto& triangle : part.triangles)
-        for (const std::uint32_t v : triangle) visit(transform_point(placed.to_world, part.positions[v]));
-    }
+    constexpr int kPoses = 5;  // equal steps of time
+    for (const PlacedPart& placed : parts_)
+      for (int i = 0; i < (placed.is_moving ? kPoses : 1); ++i) {
+        const GltfState state = placed.is_moving ? motion_->at(double(i) / (kPoses - 1)) : GltfState{};
+        const GltfPart part =
+            read_gltf_part(gltf_, placed.part, MeshUvs::unread, placed.is_moving ? &state : nullptr);
+        for (const auto& triangle : part.triangles)
+          for (const std::uint32_t v : triangle) visit(transform_point(placed.to_world, part.positions[v]));
+      }
   }
 
   void tell_losses() {
-    if (gltf_.animations > 0)
-      scene_.not_carried.push_back(
-          fmt::format("animations ({}): ignored; the asset is static", gltf_.animations));
     constexpr std::array<std::string_view, 4> read{"KHR_lights_punctual", "KHR_mesh_quantization",
                                                    "KHR_texture_transform", "EXT_mesh_gpu_instancing"};
     const std::set<std::string> required(gltf_.extensions_required.begin(), gltf_.extensions_required.end());
@@ -289,6 +333,7 @@ class GltfImporter {
   const GltfModel& gltf_;
   std::string mesh_path_;
   AssetScene scene_;
+  std::optional<GltfMotion> motion_;
   UniqueNames shape_names_, medium_names_, light_names_;
   std::map<std::tuple<std::uint32_t, bool, bool>, Surface>
       surfaces_;  // by material, and presence of UVs and tangents

@@ -44,12 +44,15 @@ std::string compiler() {
 
 }  // namespace
 
-std::string program_hash() {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
-  std::ostringstream bytes;
-  if (!(bytes << file.rdbuf())) throw run_failed("/proc/self/exe", "cannot read the program");
-  const std::string program = bytes.str();
-  return OIIO::SHA1(program.data(), program.size()).digest();
+const std::string& program_hash() {
+  static const std::string hash = [] {
+    std::ifstream file("/proc/self/exe", std::ios::binary);
+    std::ostringstream bytes;
+    if (!(bytes << file.rdbuf())) throw run_failed("/proc/self/exe", "cannot read the program");
+    const std::string program = bytes.str();
+    return OIIO::SHA1(program.data(), program.size()).digest();
+  }();
+  return hash;
 }
 
 std::vector<std::pair<std::string, std::string>> machine_notes() {

@@ -13,6 +13,6 @@ namespace opaline {
 std::vector<std::pair<std::string, std::string>> machine_notes();
 
 /// Hash of the running executable; hexadecimal.
-std::string program_hash();
+const std::string& program_hash();
 
 }  // namespace opaline

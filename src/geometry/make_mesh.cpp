@@ -21,7 +21,9 @@ constexpr std::size_t kMostTriangles = 200'000'000;
 struct SourceReader {
   const std::string& name;
   MeshUvs uvs;
-  SourceMesh operator()(const MeshFile& file) const { return read_mesh(file.path, file.part, uvs); }
+  SourceMesh operator()(const MeshFile& file) const {
+    return read_mesh(file.path, file.part, uvs, file.pose);
+  }
   template <class Builtin>
   SourceMesh operator()(const Builtin& shape) const {
     SourceMesh mesh = tessellate(shape, name);

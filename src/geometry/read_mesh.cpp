@@ -87,7 +87,8 @@ std::string mesh_contents(const std::string& path) {
   return names_no_files(path) ? read_mesh_bytes(path) : find_mesh_format(path)->contents(path);
 }
 
-SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs uvs) {
+SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs uvs,
+                     const std::optional<AnimationTime>& pose) {
   const MeshFormat* format = find_mesh_format(path);
   if (format == nullptr) {
     if (const std::string unread = unread_format(path); !unread.empty()) throw bad_file(path, unread);
@@ -97,8 +98,12 @@ SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs u
   }
   if (!part.empty() && format->read_part == nullptr)
     throw bad_file(path, "the format has no parts", "no \"part\"", '"' + part + '"');
+  if (pose && format->read_posed == nullptr)
+    throw bad_file(path, "the format has no animations", "no \"animation_time\"");
   std::string bytes = read_mesh_bytes(path);
-  SourceMesh mesh = part.empty() ? format->read(path, bytes, uvs) : format->read_part(path, part, bytes, uvs);
+  SourceMesh mesh = pose           ? format->read_posed(path, part, pose, uvs)
+                    : part.empty() ? format->read(path, bytes, uvs)
+                                   : format->read_part(path, part, bytes, uvs);
   require_indexable(path, mesh);
   clear_uvs_not_finite(path, mesh);
   join_seams(mesh);

@@ -181,6 +181,7 @@ Scene read_scene(const Document& document) {
       reader.find("lights"), "light",
       [&](const Value& value, const std::string& name) { return read_light(value, name, mm_per_unit); }));
   if (const auto surroundings = reader.find("surroundings")) read_surroundings(*surroundings, scene.lights);
+  if (const auto backdrop = reader.find("backdrop")) scene.backdrop = backdrop->color();
   scene.camera = read_camera(reader.find("camera"), mm_per_unit);
   if (const auto film = reader.find("film")) scene.film = read_film(*film);
   if (const auto settings = reader.find("settings")) scene.settings = read_settings(*settings, mm_per_unit);

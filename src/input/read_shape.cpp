@@ -21,6 +21,9 @@ MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) 
   if (const auto colors = shape.find("vertex_colors")) mesh.vertex_colors = colors->flag();
   if (const auto crease = shape.find("crease_angle")) mesh.crease_angle = crease->number();
   if (const auto rounds = shape.find("subdivide")) mesh.subdivide = int(rounds->whole_number());
+  const auto animation = shape.find("animation"), time = shape.find("animation_time");
+  if (animation && !time) animation->fail_key("has no effect without 'animation_time'");
+  if (time) mesh.pose = AnimationTime{animation ? animation->string() : "", time->number()};
   return mesh;
 }
 
@@ -65,8 +68,8 @@ ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, 
   const std::string_view kind = shape.exactly_one_of(source_names);
   place = shape.need(kind).place();
   if (kind == "file") return read_mesh_file(shape, context);
-  for (const std::string_view option :
-       {"part", "fill_holes", "fit_size", "vertex_colors", "crease_angle", "subdivide"})
+  for (const std::string_view option : {"part", "fill_holes", "fit_size", "vertex_colors", "crease_angle",
+                                        "subdivide", "animation", "animation_time"})
     if (const auto value = shape.find(option)) value->fail_key("has no effect without 'file'");
   const ObjectReader source(shape.need(kind), "shape." + std::string(kind));
   const double mm_per_unit = context.mm_per_unit;
@@ -182,6 +185,12 @@ Shape read_shape(const Value& value, const std::string& name, ShapeContext& cont
       *axis *= context.mm_per_unit;
   if (normals) shape.normals = static_cast<NormalMode>(normals->choice());
   read_surface(reader, context, shape);
+  if (const auto visible = reader.find("visible")) shape.is_seen = visible->flag();
+  if (const auto catcher = reader.find("shadow_catcher")) {
+    shape.catches_shadows = catcher->flag();
+    if (shape.catches_shadows && shape.medium)
+      catcher->fail_key("cannot be combined with 'medium'", "an opaque shape");
+  }
   return shape;
 }
 

@@ -77,6 +77,10 @@ std::vector<KeyInfo> scene_rows() {
       row("scene", "lights", list, "", kFiniteNumber, "none", "list of lights, see light"),
       row("scene", "surroundings", color, "W/(mm² sr)", kNonNegative, "0 (black)",
           "constant radiance from every direction, as a light named \"surroundings\""),
+      row("scene", "backdrop", color, "W/(mm² sr)", kNonNegative, "surroundings and environments",
+          "constant radiance behind all shapes, in place of surroundings and environments; visible to the "
+          "camera "
+          "alone, it emits no light"),
       row("scene", "camera", object, "", kFiniteNumber, "see camera",
           "position, direction and angle of view"),
       row("scene", "film", object, "", kFiniteNumber, "see film",
@@ -121,6 +125,18 @@ std::vector<KeyInfo> shape_rows() {
           "with `file`: rounds of Loop subdivision of a coarse cage; each rounds the shape, with four times "
           "as "
           "many triangles. Normals and creases of the file are ignored; open borders become smooth curves"),
+      row("shape", "animation_time", number, "s", kFiniteNumber, "at rest",
+          "with `file`: pose of a glTF asset at this time of an animation. The transform of the asset's node "
+          "is included, with those above it"),
+      row("shape", "animation", text, "", kFiniteNumber, "the first",
+          "with `animation_time`: name of the animation, or its index from 0"),
+      row("shape", "visible", flag, "", kFiniteNumber, "true",
+          "`false` hides it from the camera; it still casts shadows, reflects light and appears in "
+          "reflections"),
+      row("shape", "shadow_catcher", flag, "", kFiniteNumber, "false",
+          "opaque shapes: the camera sees the background through it, darkened by the shadows of direct "
+          "light; "
+          "alpha is their opacity"),
       row("shape", "medium", text, "", kFiniteNumber, "opaque", "name of a medium"),
       textured(row("shape", "reflectance", color, "", kUnitInterval, "0.5",
                    "diffuse reflectance of an opaque shape, multiplied by `vertex_colors`; cannot be "

@@ -68,6 +68,8 @@ struct PointIrradianceInput {
   std::span<const RgbF> bounced = {};
   /// True for coherent points: neighbours share the visibility of an environment.
   bool is_together = false;
+  /// Unless empty: one per point, the irradiance by the same rays without any shadow is added to it.
+  std::span<RgbF> unshadowed = {};
 };
 
 /// Irradiance at points from one light, per unit emission.

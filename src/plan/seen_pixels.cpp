@@ -97,6 +97,7 @@ bool add_light(const Light& light, const CameraRays& rays, SeenCells& cells) {
 std::size_t seen_pixels(const Scene& scene, std::span<const Light> lights, const World& world) {
   const Rectangle part = rendered_part(scene.film);
   const std::size_t all = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);
+  if (scene.backdrop) return all;
   const CameraRays rays(scene.camera, scene.film, world);
   SeenCells cells(part);
   for (const Light& light : lights)

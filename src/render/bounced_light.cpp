@@ -120,7 +120,7 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
         {camera_.middle_ray((column - kAround) * lattice.step, (row - kAround) * lattice.step), {}});
     keys.push_back(first_key + place * kLattices + lattice_index);
   }
-  input.rays.intersect(rays);
+  intersect_from_camera(input.scene, input.rays, rays);
   const PixelWidth pixel = pixel_width(input.scene.camera, input.scene.film, input.world);
   HeldView* const view = input.view;
   const std::size_t first_chunk = chunks_;

@@ -104,6 +104,31 @@ CameraRays::FilmPlace CameraRays::film_place(const Vec3d& point) const {
   return {center_x_ + dot(towards, across_) * per_depth, center_y_ + dot(towards, below_) * per_depth, depth};
 }
 
+void intersect_from_camera(const Scene& scene, const RayScene& scene_rays, std::span<TracedRay> rays) {
+  scene_rays.intersect(rays);
+  if (std::ranges::all_of(scene.shapes, &Shape::is_seen)) return;
+  constexpr int kMostSurfaces = 1000;
+  constexpr float kStep = 1e-6f;  // relative to the distance; the same surface may be met again
+  std::vector<std::size_t> stopped;
+  std::vector<TracedRay> further;
+  for (int i = 0; i <= kMostSurfaces; ++i) {
+    stopped.clear();
+    further.clear();
+    for (std::size_t r = 0; r < rays.size(); ++r) {
+      const auto& [ray, hit] = rays[r];
+      if (hit.mesh == Hit::kMiss || scene.shapes[hit.mesh].is_seen) continue;
+      stopped.push_back(r);
+      Ray next = ray;
+      next.near = ray.far * (1 + kStep);
+      next.far = std::numeric_limits<float>::infinity();
+      further.push_back({next, {}});
+    }
+    if (stopped.empty()) return;
+    if (i < kMostSurfaces) scene_rays.intersect(further);
+    for (std::size_t k = 0; k < stopped.size(); ++k) rays[stopped[k]] = further[k];
+  }
+}
+
 double CameraRays::blur_radius(double depth) const {
   return lens_radius_ == 0 ? 0 : lens_radius_ * std::abs(1 - depth * per_focus_distance_) / width_.at(depth);
 }

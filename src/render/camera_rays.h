@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "geometry/ray_scene.h"
@@ -57,5 +58,8 @@ class CameraRays {
   int blades_;
   std::vector<Place> places_;  // relative to the pixel's centre
 };
+
+/// First hits of camera rays: rays pass through shapes hidden from the camera.
+void intersect_from_camera(const Scene& scene, const RayScene& scene_rays, std::span<TracedRay> rays);
 
 }  // namespace opaline

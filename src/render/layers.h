@@ -17,6 +17,7 @@ struct PixelSample {
   RgbF diffuse{}, specular{};
   RgbF emitted{};      ///< radiance of directly visible lights and environments
   float coverage = 0;  ///< 1 on a surface
+  float shadow = 0;    ///< opacity of the shadows on a shadow catcher
   RgbF albedo{}, irradiance{};
   RgbF error{};           ///< error of diffuse, about equal for all rays of a pixel
   Rgb noise{};            ///< variance of diffuse, independent between rays
@@ -26,7 +27,7 @@ struct PixelSample {
   float depth = 0;
 
   /// True if no camera ray of the pixel hit anything.
-  bool empty() const { return coverage == 0 && emitted == RgbF{}; }
+  bool empty() const { return coverage == 0 && shadow == 0 && emitted == RgbF{}; }
 };
 
 /// Channel names in the order of store_pixel. The irradiance of `volume` covers opaque surfaces only.
@@ -67,7 +68,7 @@ inline std::size_t store_pixel(const PixelSample& sum, int count, const MethodLa
   };
   const RgbF radiance = sum.diffuse + sum.specular + sum.emitted;
   put(radiance, all);
-  *out++ = sum.coverage * all;
+  *out++ = (sum.coverage + sum.shadow) * all;
   *out++ = sum.depth * seen;
   put(sum.diffuse, all);
   put(sum.specular, all);
@@ -85,6 +86,7 @@ inline void add_sample(PixelSample& sum, const PixelSample& s) {
   sum.specular += s.specular;
   sum.emitted += s.emitted;
   sum.coverage += s.coverage;
+  sum.shadow += s.shadow;
   sum.albedo += s.albedo;
   sum.irradiance += s.irradiance;
   sum.error += s.error;

@@ -105,7 +105,7 @@ std::vector<SeenMeshes> seen_in(const Rectangle& tile, const RenderInput& input,
     std::size_t i = 0;
     for (int y = tile.y0; y < tile.y1; ++y)
       for (int x = tile.x0; x < tile.x1; ++x) rays[i++] = {camera.ray(x, y, s), {}};
-    input.rays.intersect(rays);
+    intersect_from_camera(input.scene, input.rays, rays);
     for (i = 0; i < rays.size(); ++i) {
       const Ray& ray = rays[i].ray;
       const Hit& hit = rays[i].hit;

@@ -79,6 +79,10 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
       met_.add(light);
       if (light.is_seen) seen_.add(light);
     }
+  if (input.scene.backdrop) {
+    seen_.surroundings.clear();
+    seen_.backdrop = RgbF(*input.scene.backdrop);
+  }
   std::vector<bool> follows_light(input.scene.shapes.size());
   if (method_of(input.scene.settings.method).needs_bodies())  // else bodies are left from another method
     for (const Body& body : input.groups)
@@ -103,7 +107,9 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
 Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::Batch* held) const {
   if (held != nullptr) held->surfaces.resize(fields_.all.size());
   // Gathered rays are many, so only their lights are cached.
-  Shaded result{collect(batch, pass.is_seen ? held : nullptr), 0};
+  SurfaceHits catchers;
+  Shaded result{collect(batch, pass.is_seen ? held : nullptr, catchers), 0};
+  if (!catchers.points.empty()) add_shadows(catchers, batch);
   for (std::size_t f = 0; f < fields_.all.size(); ++f) {
     const SurfaceHits& hits = result.hits[f];
     if (hits.points.empty()) continue;
@@ -206,13 +212,14 @@ void Shader::write_further(const SurfaceHits& hits, std::span<const RgbF> bounce
 std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedRay> rays,
                                                          std::span<const std::uint64_t> keys) const {
   std::vector<PixelSample> lights(rays.size());
+  SurfaceHits catchers;
   std::vector<SurfaceHits> hits = collect({.rays = rays,
                                            .keys = keys,
                                            .out = lights,
                                            .spread = float(ray_width_.per_depth),
                                            .width = float(ray_width_.at_camera),
                                            .is_of_camera = true},
-                                          nullptr);
+                                          nullptr, catchers);
   std::vector<SeenSurfaces> seen;
   for (std::size_t f = 0; f < hits.size(); ++f)
     if (!hits[f].points.empty() &&
@@ -222,7 +229,8 @@ std::vector<Shader::SeenSurfaces> Shader::surfaces_along(std::span<const TracedR
 }
 
 // Sorts the hits by field; rays meeting a light or nothing are done.
-std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch* held) const {
+std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch* held,
+                                         SurfaceHits& catchers) const {
   const std::span<const TracedRay> rays = batch.rays;
   const std::span<const std::uint64_t> keys = batch.keys;
   const std::span<PixelSample> out = batch.out;
@@ -240,7 +248,8 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
     } else if (hit.mesh == Hit::kMiss) {
       out[i].emitted = lights.radiance(ray.direction);
     } else {
-      SurfaceHits& own = surfaces[fields_.of_mesh[hit.mesh]];
+      const bool is_caught = batch.is_of_camera && input_.scene.shapes[hit.mesh].catches_shadows;
+      SurfaceHits& own = is_caught ? catchers : surfaces[fields_.of_mesh[hit.mesh]];
       if (own.points.empty()) {
         own.points.reserve(rays.size());
         own.hits.reserve(rays.size());
@@ -326,6 +335,23 @@ void Shader::write(const SurfaceHits& hits, const LeavingLight& light, std::span
   }
 }
 
+void Shader::add_shadows(const SurfaceHits& catchers, const RayBatch& batch) const {
+  std::vector<RgbF> unshadowed(catchers.points.size());
+  PointIrradianceInput lighting{input_.rays, catchers.points, catchers.keys, lights_};
+  lighting.light_samples = batch.light_samples;
+  lighting.seed = point_irradiance_seed(input_.scene.settings);
+  lighting.unshadowed = unshadowed;
+  const std::vector<RgbF> shadowed = irradiance_at(lighting);
+  for (std::size_t i = 0; i < catchers.rays.size(); ++i) {
+    RgbF lit(1);  // share of the light; estimates of an environment may leave 0 to 1
+    for (std::size_t c = 0; c < 3; ++c)
+      if (unshadowed[i][c] > 0) lit[c] = std::clamp(shadowed[i][c] / unshadowed[i][c], 0.f, 1.f);
+    PixelSample& sample = batch.out[catchers.rays[i]];
+    sample.emitted = seen_.radiance(batch.rays[catchers.rays[i]].ray.direction) * lit;
+    sample.shadow = 1 - (lit.x + lit.y + lit.z) / 3;
+  }
+}
+
 void Shader::MetLights::add(const Light& light) {
   (extent(light).center ? emitters : surroundings).push_back(light);
 }
@@ -340,7 +366,7 @@ EmitterHit Shader::MetLights::nearest(const Vec3f& origin, const Vec3f& directio
 }
 
 RgbF Shader::MetLights::radiance(const Vec3f& direction) const {
-  RgbF radiance;
+  RgbF radiance = backdrop;
   for (const Light& light : surroundings) radiance += background(light, direction);
   return radiance;
 }

@@ -79,13 +79,16 @@ class Shader {
   void set_bounced_light(const BouncedLight* bounced) { bounced_ = bounced; }
 
   /// True if rays without a hit may see a light.
-  bool has_visible_lights() const { return !seen_.emitters.empty() || !seen_.surroundings.empty(); }
+  bool has_visible_lights() const {
+    return !seen_.emitters.empty() || !seen_.surroundings.empty() || seen_.backdrop != RgbF{};
+  }
 
  private:
   /// Lights visible to rays.
   struct MetLights {
     std::vector<Light> emitters;      ///< those with an area
     std::vector<Light> surroundings;  ///< environments
+    RgbF backdrop{};
 
     void add(const Light& light);
     EmitterHit nearest(const Vec3f& origin, const Vec3f& direction, float far) const;
@@ -99,7 +102,10 @@ class Shader {
   };
   struct GlossyHits;
 
-  std::vector<SurfaceHits> collect(const RayBatch& batch, HeldView::Batch* held) const;
+  /// in    catchers: receives the camera's hits on shadow catchers
+  std::vector<SurfaceHits> collect(const RayBatch& batch, HeldView::Batch* held, SurfaceHits& catchers) const;
+  /// The background behind shadow catchers, and its darkening.
+  void add_shadows(const SurfaceHits& catchers, const RayBatch& batch) const;
   void add_textures(const RayBatch& batch, std::size_t ray, bool from_behind, SurfacePoint& point,
                     SurfaceHits& hits) const;
   Appearance appearance_of(const SurfaceHits& hits, std::size_t i) const;

@@ -83,7 +83,7 @@ void TileRenderer::trace(std::span<TracedRay> rays, HeldView::Batch* held) const
     }
     return;
   }
-  input_.rays.intersect(rays);
+  intersect_from_camera(input_.scene, input_.rays, rays);
   if (held == nullptr) return;
   if (std::ranges::any_of(rays, is_hit)) {
     held->hits.reserve(rays.size());

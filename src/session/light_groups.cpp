@@ -137,6 +137,12 @@ std::vector<LightGroup> light_groups(const Scene& scene) {
     throw refused({scene.file}, "noise differs between lights with this method",
                   "--method hierarchical, lambert or volume_diffusion", std::string(name_of(method)));
   if (scene.lights.empty()) throw refused({scene.file}, "the scene has no lights", "a light");
+  if (scene.backdrop && *scene.backdrop != Rgb{})
+    throw refused({scene.file}, "the backdrop belongs to no light", "no backdrop; composite it by alpha");
+  for (const Shape& shape : scene.shapes)
+    if (shape.catches_shadows)
+      throw refused(shape.place, "a shadow catcher shows the shadows of all lights together",
+                    "no shadow_catcher");
   std::vector<LightGroup> groups;
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     const Light& light = scene.lights[l];

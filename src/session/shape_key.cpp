@@ -22,6 +22,7 @@ struct AddSource {
     key.add(mesh.vertex_colors.has_value()).add(mesh.vertex_colors.value_or(false));
     key.add(mesh.crease_angle.value_or(-1));
     if (mesh.subdivide > 0) key.add(mesh.subdivide);
+    if (mesh.pose) key.add(mesh.pose->animation).add(mesh.pose->seconds);
   }
   void operator()(const SphereShape& s) const { key.add(s.center).add(s.radius).add(s.fineness); }
   void operator()(const BoxShape& s) const { key.add(s.low).add(s.high); }

@@ -136,6 +136,10 @@ StageKey view_key(const PrecomputeInput& input, std::span<const MeshKeys> meshes
   key.add(input.world.origin).add(input.world.unit);
   key.add(settings_in_key(KeyedStage::view, input.scene)).add(input.plan.rays);
   for (const MeshKeys& mesh : meshes) key.add(mesh.all);
+  for (std::size_t i = 0; i < input.scene.shapes.size(); ++i) {
+    if (!input.scene.shapes[i].is_seen) key.add(std::string("unseen")).add(i);
+    if (input.scene.shapes[i].catches_shadows) key.add(std::string("catches shadows")).add(i);
+  }
   return key.key();
 }
 

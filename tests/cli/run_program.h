@@ -20,7 +20,7 @@
 #include <thread>
 #include <vector>
 
-#include "../core/scratch_folder.h"
+#include "../core/ball_file.h"
 
 namespace opaline {
 
@@ -158,7 +158,9 @@ struct SceneFolder : ScratchFolder {
   SceneFolder() {
     put_bytes(scene, R"({
   "media": {"marble": {"preset": "marble"}},
-  "shapes": [{"name": "ball", "sphere": {"radius": 10}, "medium": "marble"}],
+  "shapes": [{"name": "ball", "file": ")" +
+                         ball_file(10) +
+                         R"(", "medium": "marble"}],
   "lights": [{"name": "key", "type": "point", "position": [20, 30, 40], "intensity": 1000}],
   "camera": {"position": [0, 0, 50]},
   "film": {"resolution": [32, 32]},

@@ -139,7 +139,9 @@ TEST(CliAssets, HowToMakeMarbleOfIt) {
 // ball of 20 units across at 50 mm has 2.5 mm a unit, 7,854 mm^2. Fails if: lengths are taken for the radius.
 TEST(CliAssets, MediumAndSizeOfAScene) {
   const SceneFolder folder;
-  const Outcome sized = run_program({"info", folder.scene, "--size", "5cm", "--medium", "ball=skin1"});
+  const Outcome sized =
+      run_program({"info", folder.scene, "--size", "5cm", "--medium", "ball=skin1", "--set",
+                   R"(shapes.ball={"name": "ball", "sphere": {"radius": 10}, "medium": "skin1"})"});
   EXPECT_TRUE(contains(sized.out, "translucent ball of skin1: 785")) << sized.out << sized.err;
   const Outcome both = run_program({"info", folder.scene, "--size", "5cm", "--set", "mm_per_unit=1"});
   EXPECT_EQ(both.exit_code, 2);

@@ -235,7 +235,9 @@ TEST(CliFailures, OutputsAreNoInputs) {
   const SceneFolder folder;
   const std::string place = folder.path.string() + "/";
   const auto rendered = [&](const std::vector<std::string>& words) {
-    std::vector<std::string> all{"render", folder.scene, "--resolution", "32x16"};
+    std::vector<std::string> all{
+        "render", folder.scene, "--resolution",
+        "32x16",  "--set",      R"(shapes.ball={"sphere": {"radius": 10}, "medium": "marble"})"};
     all.insert(all.end(), words.begin(), words.end());
     return run_program(all, place);
   };

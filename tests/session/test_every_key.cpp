@@ -2,6 +2,7 @@
 // Every key of a scene file, changed in a session: what the session keeps must not outlive what it was computed from.
 #include <map>
 
+#include "../assets/asset_test.h"
 #include "../core/scratch_folder.h"
 #include "input/load_scene.h"
 #include "input/schema.h"
@@ -49,6 +50,8 @@ const std::array<std::string, 2> kLayers{
     R"(media.flesh={"preset": "skin1"})",
     R"(media.stone={"layers": [{"medium": "flesh", "thickness": 1}, {"medium": "wax"}]})"};
 const std::string kMesh = R"(shapes.ball={"name": "ball", "file": "bump.obj", "medium": "stone"})";
+const std::string kWalk =
+    R"(shapes.ball={"name": "ball", "file": "walk.glb", "part": "0/0/0", "animation_time": 1, "medium": "stone"})";
 const std::string kColoredMesh = R"(shapes.ball={"name": "ball", "file": "coloured.obj", "medium": "stone"})";
 
 std::vector<Change> changes() {
@@ -68,6 +71,7 @@ std::vector<Change> changes() {
       {"scene.shapes", R"(shapes=[{"sphere": {"radius": 9}, "medium": "wax"}])"},
       {"scene.lights", R"(lights=[{"type": "point", "position": [9, 90, 9], "intensity": 3e4}])"},
       {"scene.surroundings", "surroundings=0.5"},
+      {"scene.backdrop", "backdrop=0.3", {"backdrop=0.2"}},
       {"scene.camera", R"(camera={"position": [0, 20, 150]})"},
       {"scene.film", R"(film={"resolution": [15, 12]})"},
       {"scene.settings", R"(settings={"samples": 300, "method": "hierarchical"})"},
@@ -149,8 +153,12 @@ std::vector<Change> changes() {
       {"shape.vertex_colors", "shapes.ball.vertex_colors=false", {kColoredMesh}},
       {"shape.crease_angle", "shapes.ball.crease_angle=20", {kMesh}},
       {"shape.subdivide", "shapes.ball.subdivide=1", {kMesh}},
+      {"shape.animation_time", "shapes.ball.animation_time=0.5", {kWalk}},
+      {"shape.animation", "shapes.ball.animation=run", {kWalk}},
       {"shape.transform", step(R"({"translate": [0, 3, 0]})")},
       {"shape.normals", "shapes.ball.normals=faceted"},
+      {"shape.visible", "shapes.ring.visible=false"},
+      {"shape.shadow_catcher", "shapes.floor.shadow_catcher=true"},
       {"shape.medium", "shapes.ball.medium=wax"},
       {"shape.reflectance", "shapes.floor.reflectance=0.9"},
       {"shape.metalness", "shapes.floor.metalness=0.5", {kGloss}},
@@ -360,6 +368,22 @@ f 8 7 9
 f 6 8 9
 )";
 
+/// A cube of 8 mm that walks to the left in one animation, and in the other runs upwards.
+std::string walking_cube() {
+  asset_test::Asset asset = asset_test::cube_mesh();
+  asset.root(asset.node({{"mesh", 0}, {"translation", {-12, 9, 0}}, {"scale", {4, 4, 4}}}));
+  const int times = asset.accessor<float>("SCALAR", asset_test::kFloat, {0, 1});
+  for (const auto& [name, end] :
+       {std::pair("walk", std::array{-20.f, 9.f}), {"run", std::array{-12.f, 20.f}}}) {
+    const int places = asset.accessor<float>("VEC3", asset_test::kFloat, {-12, 9, 0, end[0], end[1], 0});
+    asset.json["animations"].push_back(
+        {{"name", name},
+         {"samplers", {{{"input", times}, {"output", places}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
+  }
+  return asset.glb();
+}
+
 Image picture(int width, int height, float step) {
   Image image;
   image.width = image.full_width = width;
@@ -386,6 +410,7 @@ class EveryKey : public ::testing::TestWithParam<const char*> {};
 TEST_P(EveryKey, IsNoticed) {
   const ScratchFolder folder;
   put_bytes(folder.file("bump.obj"), kBump);
+  put_bytes(folder.file("walk.glb"), walking_cube());
   put_bytes(folder.file("coloured.obj"),
             std::string(kBump).replace(std::string(kBump).find("14 0"), 4, "14 0 1 .2 .1"));
   write_png(folder.file("cells.png"), picture(8, 8, .37f), 0);

@@ -31,7 +31,9 @@ struct StrokesFolder : ScratchFolder {
   "shapes": [
     {"name": "left", "sphere": {"center": )" +
                          left + R"(, "radius": 10}, "medium": "stone"},
-    {"name": "right", "sphere": {"center": [15, 10, 0], "radius": 10}, "medium": "stone"},
+    {"name": "right", "file": ")" +
+                         ball_file(10) +
+                         R"(", "transform": [{"translate": [15, 10, 0]}], "medium": "stone"},
     {"name": "floor", "quad": {"corner": [-60, -1, 60], "u": [120, 0, 0], "v": [0, 0, -120]}}
   ],
   "lights": [

@@ -23,7 +23,8 @@ struct TintedFolder : ScratchFolder {
 
   TintedFolder() {
     put_bytes(scene, R"({"media": {"m": {"preset": "marble", "tint": 0.5}},
-  "shapes": [{"sphere": {"radius": 10}, "medium": "m"}],
+  "shapes": [{"file": ")" +
+                         ball_file(10) + R"(", "medium": "m"}],
   "lights": [{"type": "point", "position": [30, 40, 30], "intensity": 9000}],
   "camera": {"position": [0, 5, 60]}, "film": {"resolution": [16, 16]}, "settings": {"samples": 200}})");
   }

@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "../core/scratch_folder.h"
+#include "../core/ball_file.h"
 #include "input/load_scene.h"
 #include "session/session_records.h"
 #include "view/view_frame.h"
@@ -45,7 +45,9 @@ struct ViewFolder : ScratchFolder {
   "media": {"stone": {"preset": "marble"}},
   "shapes": [
     {"name": "left", "sphere": {"center": [-15, 10, 0], "radius": 10}, "medium": "stone"},
-    {"name": "right", "sphere": {"center": [15, 10, 0], "radius": 10}, "medium": "stone"},
+    {"name": "right", "file": ")" +
+                         ball_file(10) +
+                         R"(", "transform": [{"translate": [15, 10, 0]}], "medium": "stone"},
     {"name": "floor", "quad": {"corner": [-60, -1, 60], "u": [120, 0, 0], "v": [0, 0, -120]}}
   ],
   "lights": [

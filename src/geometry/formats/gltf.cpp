@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// GLB and glTF 2.0: a primitive of a mesh, without the nodes it stands at.
+// GLB and glTF 2.0: a primitive of a mesh, without its node, unless the node poses it.
 #include <utility>
 
 #include "geometry/formats/file_checks.h"
@@ -10,8 +10,9 @@
 namespace opaline {
 namespace {
 
-SourceMesh read_primitive(const std::string& path, const std::string& part, std::string&, MeshUvs uvs) {
-  GltfPart primitive = read_gltf_part(path, part, uvs);
+SourceMesh read_posed(const std::string& path, const std::string& part,
+                      const std::optional<AnimationTime>& pose, MeshUvs uvs) {
+  GltfPart primitive = read_gltf_part(path, part, uvs, pose);
   SourceMesh mesh;
   mesh.positions = std::move(primitive.positions);
   mesh.normals = std::move(primitive.normals);
@@ -32,16 +33,21 @@ SourceMesh read_primitive(const std::string& path, const std::string& part, std:
   return mesh;
 }
 
-SourceMesh read_without_part(const std::string& path, std::string& bytes, MeshUvs uvs) {
-  return read_primitive(path, "", bytes, uvs);
+SourceMesh read_primitive(const std::string& path, const std::string& part, std::string&, MeshUvs uvs) {
+  return read_posed(path, part, {}, uvs);
+}
+
+SourceMesh read_without_part(const std::string& path, std::string&, MeshUvs uvs) {
+  return read_posed(path, "", {}, uvs);
 }
 
 }  // namespace
 
-constinit const MeshFormat glb_format{
-    .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
+constinit const MeshFormat glb_format{.read = read_without_part,
+                                      .read_part = read_primitive,
+                                      .read_posed = read_posed,
+                                      .contents = gltf_contents};
 
-constinit const MeshFormat gltf_format{
-    .read = read_without_part, .read_part = read_primitive, .contents = gltf_contents};
+constinit const MeshFormat gltf_format = glb_format;
 
 }  // namespace opaline

@@ -67,6 +67,19 @@ PartIndex find_part(const GltfModel& gltf, const std::string& part) {
                  "\"part\" as \"mesh/primitive\": " + known_parts(gltf), '"' + part + '"');
 }
 
+/// The only node with the part's mesh, for a pose.
+std::size_t only_node_of(const GltfModel& gltf, std::size_t mesh, const std::string& part) {
+  std::optional<std::size_t> only;
+  std::size_t nodes = 0;
+  for (std::size_t i = 0; i < gltf.nodes.size(); ++i)
+    if (gltf.nodes[i].mesh == mesh && nodes++ == 0) only = i;
+  if (nodes != 1)
+    throw bad_file(gltf.path, "\"animation_time\" requires a part at a node",
+                   "\"part\" as \"mesh/primitive/node\": " + std::to_string(nodes) + " nodes have the mesh",
+                   '"' + part + '"');
+  return *only;
+}
+
 /// The corners of all triangles, in the order of the vertices.
 class TriangleList {
  public:
@@ -199,8 +212,9 @@ void read_colors(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPart
 
 }  // namespace
 
-GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, MeshUvs uvs) {
-  const PartIndex index = find_part(gltf, name);
+GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, MeshUvs uvs, const GltfState* state) {
+  PartIndex index = find_part(gltf, name);
+  if (state != nullptr && !index.node) index.node = only_node_of(gltf, index.mesh, name);
   const GltfPrimitive& primitive = gltf.meshes[index.mesh].primitives[index.primitive];
   const std::string place =
       record_name("meshes", index.mesh) + '.' + record_name("primitives", index.primitive);
@@ -219,7 +233,7 @@ GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, MeshUvs 
   read_colors(gltf, primitive, part);
   bool is_inside_out = false;
   if (index.node) {
-    is_inside_out = pose(gltf, *index.node, primitive, place, part);
+    is_inside_out = pose(gltf, *index.node, primitive, state, place, part);
     check_positions(gltf, positions->second, part.positions);
   }
   TriangleList(gltf, primitive, place).read(part);
@@ -230,8 +244,12 @@ GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, MeshUvs 
   return part;
 }
 
-GltfPart read_gltf_part(const std::string& path, const std::string& part, MeshUvs uvs) {
-  return read_gltf_part(*load_gltf(path), part, uvs);
+GltfPart read_gltf_part(const std::string& path, const std::string& part, MeshUvs uvs,
+                        const std::optional<AnimationTime>& pose) {
+  const std::shared_ptr<const GltfModel> gltf = load_gltf(path);
+  if (!pose) return read_gltf_part(*gltf, part, uvs);
+  const GltfState state = GltfAnimation(*gltf, find_animation(*gltf, pose->animation)).at(pose->seconds);
+  return read_gltf_part(*gltf, part, uvs, &state);
 }
 
 std::string gltf_contents(const std::string& path) {

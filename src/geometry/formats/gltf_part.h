@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@
 
 namespace opaline {
 
-/// One primitive of the asset: in metres and in the mesh's own space.
+/// One primitive of the asset, in metres: in the mesh's own space, or in the scene's if skinned or animated.
 struct GltfPart {
   std::vector<Vec3d> positions;
   std::vector<Vec3f> normals;             ///< empty, or one per vertex, of any length
@@ -25,11 +26,13 @@ struct GltfPart {
   std::vector<std::string> warnings;
 };
 
-/// in    part: "mesh/primitive", the indices of both; uvs: UV request
+/// in    part: "mesh/primitive", or "mesh/primitive/node", their indices; uvs: UV request; pose: of an animation; none: at
+///       rest
 /// out   every index in range, every position finite and below 1e18; strips and fans as triangles
 /// error Error{bad_input} naming the file, the accessor and its element: no such part, points or lines, data
 ///       out of bounds or of a type invalid in glTF
-GltfPart read_gltf_part(const std::string& path, const std::string& part, MeshUvs uvs = MeshUvs::unread);
+GltfPart read_gltf_part(const std::string& path, const std::string& part, MeshUvs uvs = MeshUvs::unread,
+                        const std::optional<AnimationTime>& pose = {});
 
 /// Contents of a part: changes with the bytes of the file or of its buffers.
 std::string gltf_contents(const std::string& path);

@@ -25,7 +25,10 @@ Transform& add(Transform& sum, const Transform& t, double weight) {
 // ---- morph targets ----------------------------------------------------------------------------------------
 
 /// The node's weights, or the mesh's; none: all are 0.
-const std::vector<double>& morph_weights(const GltfModel& gltf, std::size_t node) {
+const std::vector<double>& morph_weights(const GltfModel& gltf, std::size_t node, const GltfState* state) {
+  if (state != nullptr)
+    if (const auto moved = state->weights.find(std::uint32_t(node)); moved != state->weights.end())
+      return moved->second;
   const auto own = gltf.node_weights.find(node);
   return own != gltf.node_weights.end() ? own->second : gltf.meshes[gltf.nodes[node].mesh].weights;
 }
@@ -43,9 +46,8 @@ std::vector<Vec3d> target_vectors(const GltfModel& gltf, const GltfAttributes& t
   return vectors;
 }
 
-void morph(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive, const std::string& place,
-           GltfPart& part) {
-  const std::vector<double>& weights = morph_weights(gltf, node);
+void morph(const GltfModel& gltf, const std::vector<double>& weights, const GltfPrimitive& primitive,
+           const std::string& place, GltfPart& part) {
   if (weights.size() != primitive.targets.size())
     fail_at(gltf.path, place, "does not have as many morph targets as weights",
             std::to_string(weights.size()), std::to_string(primitive.targets.size()));
@@ -67,7 +69,7 @@ void morph(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primiti
 // ---- skins ------------------------------------------------------------------------------------------------
 
 /// From the mesh's space at bind time to the scene's, by joint.
-std::vector<Transform> joint_matrices(const GltfModel& gltf, std::size_t skin_index) {
+std::vector<Transform> joint_matrices(const GltfModel& gltf, std::size_t skin_index, const GltfState* state) {
   const GltfRecord skin = gltf.record("skins", skin_index);
   const std::vector<std::uint32_t> joints = skin.indices("joints");
   const std::uint32_t bind = skin.index("inverseBindMatrices");
@@ -84,7 +86,7 @@ std::vector<Transform> joint_matrices(const GltfModel& gltf, std::size_t skin_in
     if (joints[j] >= gltf.nodes.size())
       skin.fail("joints", "refers to nothing", "below " + std::to_string(gltf.nodes.size()),
                 std::to_string(joints[j]));
-    matrices.push_back(compose(node_to_world(gltf, joints[j]), inverse[j]));
+    matrices.push_back(compose(node_to_world(gltf, joints[j], state), inverse[j]));
   }
   return matrices;
 }
@@ -160,8 +162,8 @@ class SkinBlend {
 };
 
 std::vector<Transform> blended_joints(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive,
-                                      const std::string& place, GltfPart& part) {
-  SkinBlend blend(gltf, joint_matrices(gltf, gltf.nodes[node].skin), part.positions.size());
+                                      const GltfState* state, const std::string& place, GltfPart& part) {
+  SkinBlend blend(gltf, joint_matrices(gltf, gltf.nodes[node].skin, state), part.positions.size());
   for (std::size_t set = 0;; ++set) {
     const auto joints = primitive.attributes.find("JOINTS_" + std::to_string(set)),
                weights = primitive.attributes.find("WEIGHTS_" + std::to_string(set));
@@ -209,15 +211,17 @@ bool is_skinned(const GltfModel& gltf, std::size_t node, const GltfPrimitive& pr
 bool is_posed(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive) {
   return is_skinned(gltf, node, primitive) ||
          (!primitive.targets.empty() &&
-          std::ranges::any_of(morph_weights(gltf, node), [](double w) { return w != 0; }));
+          std::ranges::any_of(morph_weights(gltf, node, nullptr), [](double w) { return w != 0; }));
 }
 
-bool pose(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive, const std::string& place,
-          GltfPart& part) {
-  if (!primitive.targets.empty() && !morph_weights(gltf, node).empty())
-    morph(gltf, node, primitive, place, part);
-  if (!is_skinned(gltf, node, primitive)) return false;
-  return skin(blended_joints(gltf, node, primitive, place, part), part);
+bool pose(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive, const GltfState* state,
+          const std::string& place, GltfPart& part) {
+  const std::vector<double>& weights = morph_weights(gltf, node, state);
+  if (!primitive.targets.empty() && !weights.empty()) morph(gltf, weights, primitive, place, part);
+  if (is_skinned(gltf, node, primitive))
+    return skin(blended_joints(gltf, node, primitive, state, place, part), part);
+  if (state == nullptr) return false;
+  return skin(std::vector<Transform>(part.positions.size(), node_to_world(gltf, node, state)), part);
 }
 
 }  // namespace opaline

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rest pose of a node's mesh: weights of its morph targets, and joints of its skin.
+// Pose of a node's mesh, at rest or at a time of an animation: weights of its morph targets, and joints of its skin.
 #pragma once
 
+#include "asset_files/gltf_animation.h"
 #include "asset_files/gltf_model.h"
 #include "geometry/formats/gltf_part.h"
 
@@ -14,12 +15,13 @@ bool is_skinned(const GltfModel& gltf, std::size_t node, const GltfPrimitive& pr
 /// True if the primitive's shape at the node differs from that of the mesh alone.
 bool is_posed(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive);
 
-/// Moves a part's vertices, normals and tangents into the node's pose: in the node's space, or in the scene's
-/// if skinned.
-/// in    place: of the primitive, for errors; part: from the mesh, without triangles
-/// out   true if joints mirror most vertices: triangles then face inwards
+/// Moves a part's vertices, normals and tangents into the node's pose: in the scene's space if skinned or animated, else
+/// in the node's.
+/// in    state: of an animation; null: at rest; place: of the primitive, for errors; part: from the mesh, without
+///       triangles
+/// out   true if most vertices are mirrored: triangles then face inwards
 /// error Error{bad_input} naming the accessor: a missing joint, weights below 0, the wrong number of either
-bool pose(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive, const std::string& place,
-          GltfPart& part);
+bool pose(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive, const GltfState* state,
+          const std::string& place, GltfPart& part);
 
 }  // namespace opaline

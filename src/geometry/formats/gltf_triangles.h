@@ -8,6 +8,7 @@
 namespace opaline {
 
 /// A part of a loaded asset, see read_gltf_part.
-GltfPart read_gltf_part(const GltfModel& gltf, const std::string& part, MeshUvs uvs = MeshUvs::unread);
+GltfPart read_gltf_part(const GltfModel& gltf, const std::string& part, MeshUvs uvs = MeshUvs::unread,
+                        const GltfState* state = nullptr);
 
 }  // namespace opaline

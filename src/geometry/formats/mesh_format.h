@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,10 @@ struct MeshFormat {
   /// A part of the mesh, see MeshFile::part. Null: files of the format have no parts.
   SourceMesh (*read_part)(const std::string& path, const std::string& part, std::string& bytes,
                           MeshUvs uvs) = nullptr;
+
+  /// The same at a time of an animation. Null: files of the format have none.
+  SourceMesh (*read_posed)(const std::string& path, const std::string& part,
+                           const std::optional<AnimationTime>& pose, MeshUvs uvs) = nullptr;
 
   /// Contents of a mesh file with references to other files. Null: its bytes.
   std::string (*contents)(const std::string& path) = nullptr;

@@ -150,7 +150,7 @@ std::vector<double> expected_points(const PrecomputeInput& input) {
       rays.push_back({camera.middle_ray((2 * column + 1) * film.resolution[0] / (2 * kColumns),
                                         (2 * row + 1) * film.resolution[1] / (2 * kRows)),
                       {}});
-  input.rays.intersect(rays);
+  intersect_from_camera(input.scene, input.rays, rays);
   const double each =
       double(film.resolution[0]) * double(film.resolution[1]) * film.samples_per_pixel / double(rays.size());
   std::vector<double> points(input.world.meshes.size());

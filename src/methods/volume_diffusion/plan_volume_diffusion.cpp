@@ -100,7 +100,7 @@ BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyP
   // Bytes, fitted to bench_plan: per cell cutting the surface, exitance and error during the fits; per light,
   // weights; with bounces, weights for a second fit, the fit, and the gathered light.
   constexpr std::size_t kCutSample = 680, kLight = 4, kBounces = 420;
-  constexpr double kVaryingCell = 350;  // its own medium, and the flux to each neighbour
+  constexpr double kVaryingCell = 500;  // its own medium, and the flux to each neighbour
   const double in_wires =
       body.thickness > 0 ? 1.2 * needle_fraction(input.world, body) * body.cell / body.thickness : 0;
   // The cells cutting a surface are as many as those of its projections along the axes; fitted to spheres.

@@ -103,9 +103,9 @@ export class Knobs {
     };
     for (const name of Object.keys(scene.media || {})) group(`media.${name}`, `Medium ${name}`, this.mediumRows(name));
     (scene.lights || []).forEach((light, i) => group(`lights.${i}`, `Light ${light.name || i}`, this.rowsOf(`light.${light.type}`, this.pathOf("lights", i), (s) => s.lights[i], ["type", "name"])));
-    group("surroundings", "Surroundings", [this.knob("scene", "surroundings", "surroundings", (s) => s.surroundings)]);
+    group("surroundings", "Surroundings", ["surroundings", "backdrop"].map((key) => this.knob("scene", key, key, (s) => s[key])));
     (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`,
-      [...("medium" in shape ? ["medium"] : ["reflectance", ...kGloss.filter((key) => key in shape)]), "normals"].map((key) =>
+      [...("medium" in shape ? ["medium"] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), "normals", "visible"].map((key) =>
         this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera, unusedOf(scene.camera)));
     group("film", "Image", this.rowsOf("film", "film", (s) => s.film));
