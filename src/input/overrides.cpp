@@ -6,6 +6,8 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
+#include <string_view>
 
 #include "input/deprecated_spellings.h"
 #include "input/schema.h"
@@ -231,22 +233,36 @@ void check_new_media(const Document& document, const std::set<std::string>& name
   }
 }
 
-/// Removes the opaque surface of a shape made translucent on the command line, and vice versa.
-void drop_replaced_surface(Node& shape) {
-  const auto is_given = [&](std::string_view key) {
+/// Removes the opaque surface of a shape made translucent by an override, and vice versa. Of two overrides the later one
+/// wins ("shapes.*.medium" before "shapes.floor.reflectance"), but both stay if they name the shape alike, for an error.
+void drop_replaced_surface(const Document& document, Node& shape) {
+  const auto index_of = [&](std::string_view key) {
     const Node* member = find_member(shape, key);
-    return member != nullptr && member->override_index >= 0;
+    return member != nullptr ? member->override_index : -1;
   };
-  const auto drop = [&](std::string_view key) {
-    std::erase_if(shape.children, [&](const Node& c) { return c.override_index < 0 && c.key == key; });
+  const auto named_by = [&](int index) {
+    const std::string& text = document.overrides[std::size_t(index)];
+    return text.substr(0, text.rfind('.', text.find('=')));
   };
-  if (is_given("medium"))
-    for (const char* key :
-         {"reflectance", "metalness", "specular_roughness", "specular_ior", "specular_weight",
-          "specular_anisotropy", "specular_rotation", "fuzz_weight", "fuzz_color", "fuzz_roughness"})
-      drop(key);
-  else if (is_given("reflectance"))
-    for (const char* key : {"medium", "group"}) drop(key);
+  const int medium = index_of("medium"), reflectance = index_of("reflectance");
+  if (medium == reflectance) return;
+  const int winner = std::max(medium, reflectance);
+  const auto drop = [&](std::span<const std::string_view> keys) {
+    std::erase_if(shape.children, [&](const Node& c) {
+      const bool is_earlier = c.override_index < 0 ||
+                              (c.override_index < winner && named_by(c.override_index) != named_by(winner));
+      return is_earlier && std::ranges::find(keys, c.key) != keys.end();
+    });
+  };
+  constexpr std::array<std::string_view, 11> kOpaque{
+      "reflectance",     "metalness",           "specular_roughness", "specular_ior",
+      "specular_weight", "specular_anisotropy", "specular_rotation",  "fuzz_weight",
+      "fuzz_color",      "fuzz_roughness",      "shadow_catcher"};
+  constexpr std::array<std::string_view, 2> kTranslucent{"medium", "group"};
+  if (winner == medium)
+    drop(kOpaque);
+  else
+    drop(kTranslucent);
 }
 
 /// Keeps the later one of two keys for a property of the camera.
@@ -272,7 +288,7 @@ void apply_overrides(Document& document) {
   check_new_media(document, names);
   for (Node& member : document.root.children)
     if (member.key == "shapes")
-      std::ranges::for_each(member.children, drop_replaced_surface);
+      for (Node& shape : member.children) drop_replaced_surface(document, shape);
     else if (member.key == "camera")
       drop_replaced_lens(member);
 }

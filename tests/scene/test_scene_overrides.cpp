@@ -70,7 +70,7 @@ TEST(SceneOverrides, NewMediumWithANearName) {
 }
 
 // Claim: on the command line a medium takes the place of an opaque surface of the file, and a reflectance that of a
-// medium and its group; what is given together still collides. Source: read_shape.cpp, which allows one of the two.
+// medium and its group; the later one of two wins, but what is given of one shape by one name still collides. Source: read_shape.cpp, which allows one of the two.
 // Fails if: the file's keys stay.
 TEST(SceneOverrides, OpaqueAndTranslucentReplaceEachOther) {
   const std::string scene = R"({
@@ -83,6 +83,11 @@ TEST(SceneOverrides, OpaqueAndTranslucentReplaceEachOther) {
   EXPECT_FALSE(swapped.shapes[1].medium);
   EXPECT_TRUE(swapped.shapes[1].group.empty());
   EXPECT_EQ(swapped.shapes[1].reflectance, Rgb(.25, .25, .25));
+  const Scene but_one = parse(scene, {"shapes.*.medium=marble", "shapes.0.reflectance=0.25"});
+  EXPECT_FALSE(but_one.shapes[0].medium);
+  EXPECT_TRUE(but_one.shapes[1].medium);
+  EXPECT_FALSE(
+      parse(scene, {"shapes.1.reflectance=0.25", "shapes.*.medium=marble"}).shapes[1].has_reflectance);
   expect_fragments(error_of(scene, {"shapes.0.medium=marble", "shapes.0.reflectance=1"}),
                    {"cannot be combined with 'medium'"});
 }

@@ -227,6 +227,17 @@ TEST(SceneEdits, FileKeepsComments) {
 }
 // the end
 )");
+  edits.set(one("shapes.ball.reflectance", "0.3"));
+  edits.set(one("shapes.ball.metalness", "1"));
+  EXPECT_FALSE(edits.scene().shapes[0].medium);
+  EXPECT_EQ(parse_scene(edits.file_text(), file), edits.scene());
+  edits.set(SetValues{{{"media.skin", R"({"preset": "skin1"})"}, {"shapes.ball.medium", "\"skin\""}}, 0});
+  EXPECT_EQ(edits.scene().media.at(*edits.scene().shapes[0].medium).name, "skin");
+  EXPECT_EQ(parse_scene(edits.file_text(), file), edits.scene());
+  edits.undo();
+  EXPECT_TRUE(edits.scene().shapes[0].gloss);
+  edits.undo();
+  edits.undo();
   edits.set(one("media.stone", R"({"sigma_a": [0.1, 0.1, 0.1], "sigma_s_prime": [1, 1, 1]})"));
   EXPECT_EQ(parse_scene(edits.file_text(), file), edits.scene());
   EXPECT_NE(edits.file_text().find("// warm"), std::string::npos);

@@ -129,6 +129,30 @@ TEST_F(LongViewPage, TheCameraIsFree) {
   expect_shown(rendered(folder.scene));
 }
 
+// Claim: a shape becomes translucent by a measured medium that the scene did not have, and opaque again; each is one step of
+// undo. Source: knobs.js. Fails if: the surface of before stays in the way, or the medium is not added.
+TEST_F(LongViewPage, ShapesChangeTheirMaterial) {
+  final_edits();
+  const auto choose = [&](const std::string& material) {
+    browser.run(tab,
+                "(() => { for (const d of document.querySelectorAll('details')) d.open = true; const s = "
+                "document.querySelector('[aria-label=\"shapes.left.medium\"]'); s.value = '" +
+                    material + "'; s.onchange(); })()");
+    return final_edits(revision + 1);
+  };
+  std::vector<std::string> edits = choose("skin1");
+  EXPECT_EQ(edits.back(), "shapes.left.medium=\"skin1\"");
+  expect_shown(rendered(folder.scene, {"media.skin1.preset=skin1", "shapes.left.medium=skin1"}));
+  EXPECT_EQ(choose("").back(), "shapes.left.reflectance=0.5");
+  expect_shown(rendered(folder.scene, {"shapes.left.reflectance=0.5"}));
+  EXPECT_EQ(choose("stone").back(), "shapes.left.medium=\"stone\"");
+  for (int i = 0; i < 2; ++i) {
+    browser.key(tab, "z", 2);
+    edits = final_edits(revision + 1);
+  }
+  EXPECT_EQ(edits.back(), "shapes.left.medium=\"skin1\"");
+}
+
 // Claim: a number that is refused is replaced by the accepted one at once, in its field, and the picture stays as it is.
 // Fails if: what the page has changed goes before what the server tells of after it was refused.
 TEST_F(LongViewPage, ARefusalRestores) {

@@ -82,7 +82,7 @@ export class Knobs {
     if (!this.rows) return;
     const media = scene.media || {}, lights = scene.lights || [], shapes = scene.shapes || [];
     const shape = JSON.stringify([unusedOf(scene.camera), Object.entries(media).map(([name, m]) => [name, this.formOf(m), kOptional.filter((key) => key in m), objectsOf(m)]),
-      lights.map((l) => [l.name, l.type, objectsOf(l)]), shapes.map((s) => [s.name, "medium" in s, kGloss.filter((key) => key in s), objectsOf(s)])]);
+      lights.map((l) => [l.name, l.type, objectsOf(l)]), shapes.map((s) => [s.name, s.medium, kGloss.filter((key) => key in s), objectsOf(s)])]);
     if (shape !== this.shape) this.build(scene);
     this.shape = shape;
     for (const knob of this.knobs) {
@@ -103,10 +103,10 @@ export class Knobs {
     };
     for (const name of Object.keys(scene.media || {})) group(`media.${name}`, `Medium ${name}`, this.mediumRows(name));
     (scene.lights || []).forEach((light, i) => group(`lights.${i}`, `Light ${light.name || i}`, this.rowsOf(`light.${light.type}`, this.pathOf("lights", i), (s) => s.lights[i], ["type", "name"])));
-    group("surroundings", "Surroundings", ["surroundings", "backdrop"].map((key) => this.knob("scene", key, key, (s) => s[key])));
-    (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`,
-      [...("medium" in shape ? ["medium"] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), "normals", "visible"].map((key) =>
-        this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))));
+    group("scene", "Scene", ["surroundings", "backdrop", "mm_per_unit"].map((key) => this.knob("scene", key, key, (s) => s[key])));
+    (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`, [this.materialRow(i),
+      ...[...("medium" in shape ? [] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), "normals", "visible"].map((key) =>
+        this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))]));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera, unusedOf(scene.camera)));
     group("film", "Image", this.rowsOf("film", "film", (s) => s.film));
     group("settings", "Method", this.rowsOf("settings", "settings", (s) => s.settings, ["laboratory"]));
@@ -116,6 +116,23 @@ export class Knobs {
   rowsOf(section, path, owner, without = []) {
     return [...this.rows.values()].filter((row) => row.section === section && !without.includes(row.key))
       .map((row) => this.knob(section, row.key, `${path}.${row.key}`, (s) => (owner(s) || {})[row.key]));
+  }
+
+  // Opaque, a medium of the scene, or a measured one, which becomes one of the scene.
+  materialRow(i) {
+    const media = Object.keys(this.scene.media || {}), path = `${this.pathOf("shapes", i)}.medium`;
+    const measured = [...this.presets.keys()].filter((name) => !media.includes(name));
+    const options = (names) => names.map((name) => make("option", {textContent: name}));
+    const select = make("select", {ariaLabel: path}, make("option", {value: "", textContent: "opaque"}),
+      ...(media.length ? [make("optgroup", {label: "media of the scene"}, ...options(media))] : []),
+      make("optgroup", {label: "measured media"}, ...options(measured)));
+    select.value = this.scene.shapes[i].medium || "";
+    select.onchange = () => {
+      const name = select.value, added = measured.includes(name) ? {[`media.${name}`]: {preset: name}} : {};
+      this.set(name ? {...added, [path]: name} : {[path.replace(/medium$/, "reflectance")]: .5}, newStroke());
+    };
+    return make("label", {className: "knob", title: "opaque, or a translucent medium inside a closed mesh"},
+      make("span", {className: "name", textContent: "material"}), select);
   }
 
   mediumRows(name) {
@@ -162,7 +179,7 @@ export class Knobs {
     const {row} = knob, box = make("span", {className: "inputs"});
     if (isObject(knob.value(this.scene))) this.text(knob, box);
     else if (row.type === "flag") this.flag(knob, box, set);
-    else if (row.type === "choice" || row.key === "medium") this.choice(knob, box, set);
+    else if (row.type === "choice") this.choice(knob, box, set);
     else if (kNumbers.includes(row.type)) this.number(knob, box, set);
     else if (kColours.includes(row.type)) this.colour(knob, box, set);
     else if (row.type === "text") this.text(knob, box);
@@ -184,8 +201,7 @@ export class Knobs {
   }
 
   choice(knob, box, set) {
-    const words = knob.row.type === "choice" ? knob.row.choices : Object.keys(this.scene.media || {});
-    const select = make("select", {ariaLabel: knob.row.key, onchange: () => set(select.value)}, ...words.map((word) => make("option", {textContent: word})));
+    const select = make("select", {ariaLabel: knob.row.key, onchange: () => set(select.value)}, ...knob.row.choices.map((word) => make("option", {textContent: word})));
     knob.show = (value) => { select.value = value ?? defaultOf(knob.row); };
     box.append(select);
   }
