@@ -411,6 +411,7 @@ struct Film {
   FilmColorSpace color_space = FilmColorSpace::lin_rec709;  ///< for EXR only
   std::optional<int> wavelengths{};  ///< number of wavelengths; none: as few as the spectra allow
   bool denoise = false;              ///< by Open Image Denoise
+  double shutter = 0;                ///< motion blur: opening time around the frame, in frames, [0, 1]
   friend bool operator==(const Film&, const Film&) = default;
 };
 
@@ -447,6 +448,13 @@ struct Settings {
   friend bool operator==(const Settings&, const Settings&) = default;
 };
 
+/// The camera and the places of the shapes when the shutter opens or closes.
+struct ShutterEnd {
+  Camera camera;
+  std::vector<Shape> shapes;
+  friend bool operator==(const ShutterEnd&, const ShutterEnd&) = default;
+};
+
 struct Scene {
   std::string file;         ///< for messages
   std::string translation;  ///< summary of an asset's import, one line; empty: a scene file
@@ -462,6 +470,7 @@ struct Scene {
   Settings settings;
   /// Radiance behind all shapes, visible to camera rays alone; none: that of surroundings and environments.
   std::optional<Rgb> backdrop{};
+  std::vector<ShutterEnd> shutter{};  ///< opening and closing; empty: nothing moves, or no motion blur
   /// Frames from the first key of the camera or film to the last, if nothing else is keyed: images of the
   /// same surfaces under the same light; otherwise 1.
   std::size_t camera_frames = 1;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -30,14 +31,25 @@ std::vector<double> slerp(std::span<const double> a, std::span<const double> b, 
   return mean;
 }
 
+/// A body scaled to 0, to hide it, becomes a speck: a mesh needs an area, and a camera its directions.
+Vec3d kept_open(Vec3d scale, std::span<const double> values) {
+  constexpr double kSpeck = 1e-3;  // of the largest scale
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (std::abs(scale[axis]) < kSpeck * largest) scale[axis] = std::copysign(kSpeck * largest, scale[axis]);
+  return scale;
+}
+
 }  // namespace
 
 GltfAnimation::GltfAnimation(const GltfModel& gltf, std::size_t index) : gltf_(gltf) {
   const GltfRecord animation = gltf.record("animations", index);
-  for (const GltfRecord& channel : animation.records("channels")) add_channel(animation, channel);
+  const std::vector<GltfRecord> samplers = animation.records("samplers");
+  for (const GltfRecord& channel : animation.records("channels")) add_channel(channel, samplers);
 }
 
-void GltfAnimation::add_channel(const GltfRecord& animation, const GltfRecord& channel) {
+void GltfAnimation::add_channel(const GltfRecord& channel, std::span<const GltfRecord> samplers) {
   const GltfRecord target = channel.need("target").record("target");
   const std::string path = target.text("path");
   if (!target.has("node") || path == "pointer") return;  // belongs to an extension
@@ -64,12 +76,15 @@ void GltfAnimation::add_channel(const GltfRecord& animation, const GltfRecord& c
         read.width = std::max(read.width, primitive.targets.size());
     if (read.width == 0) return;  // the mesh has no targets
   }
-  const std::vector<GltfRecord> samplers = animation.records("samplers");
   const std::uint32_t sampler = channel.need("sampler").index("sampler");
   if (sampler >= samplers.size())
     channel.fail("sampler", "refers to nothing", "below " + std::to_string(samplers.size()),
                  std::to_string(sampler));
   read_sampler(samplers[sampler], read);
+  constexpr std::size_t kMostNumbers = 50'000'000;
+  numbers_ += read.times.size() + read.values.size();
+  if (numbers_ > kMostNumbers)
+    channel.fail("sampler", "makes the animation too long", "at most 5e7 numbers", std::to_string(numbers_));
   duration_ = std::max(duration_, read.times.back());
   channels_.push_back(std::move(read));
 }
@@ -145,7 +160,8 @@ GltfState GltfAnimation::at(double seconds) const {
     GltfPlacement& placement =
         moved.try_emplace(channel.node, own ? std::get<GltfPlacement>(*own) : GltfPlacement{}).first->second;
     if (channel.path == Path::translation) placement.translation = {value[0], value[1], value[2]};
-    if (channel.path == Path::scale) placement.scale = {value[0], value[1], value[2]};
+    if (channel.path == Path::scale)
+      placement.scale = kept_open({value[0], value[1], value[2]}, channel.values);
     if (channel.path == Path::rotation && dot(value, value) > 0)
       placement.rotation = {value[0], value[1], value[2], value[3]};
   }
@@ -168,9 +184,27 @@ bool GltfAnimation::changes_weights(std::uint32_t node) const {
   });
 }
 
+std::shared_ptr<const GltfAnimation> load_animation(const std::shared_ptr<const GltfModel>& gltf,
+                                                    std::size_t index) {
+  static std::mutex mutex;
+  static std::shared_ptr<const GltfModel> model;  // the animation refers to it
+  static std::shared_ptr<const GltfAnimation> last;
+  static std::size_t index_of_last = 0;
+  const std::lock_guard lock(mutex);
+  if (last == nullptr || model != gltf || index_of_last != index) {
+    last = std::make_shared<const GltfAnimation>(*gltf, index);
+    model = gltf;
+    index_of_last = index;
+  }
+  return last;
+}
+
 std::string animation_name(const GltfModel& gltf, std::size_t index) {
-  const std::string name = gltf.record("animations", index).text("name");
-  return name.empty() ? std::to_string(index) : name;
+  try {
+    if (std::string name = gltf.record("animations", index).text("name"); !name.empty()) return name;
+  } catch (const Error&) {  // not an object, or its name is no text
+  }
+  return std::to_string(index);
 }
 
 std::size_t find_animation(const GltfModel& gltf, const std::string& name) {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,16 +49,22 @@ class GltfAnimation {
     std::vector<double> at(double seconds) const;
   };
 
-  void add_channel(const GltfRecord& animation, const GltfRecord& channel);
+  void add_channel(const GltfRecord& channel, std::span<const GltfRecord> samplers);
   void read_sampler(const GltfRecord& sampler, Channel& channel) const;
 
   const GltfModel& gltf_;
   std::vector<Channel> channels_;
   double duration_ = 0;
+  std::size_t numbers_ = 0;  // of all channels
 };
 
 /// The animation's name, or its index.
 std::string animation_name(const GltfModel& gltf, std::size_t index);
+
+/// Keeps the last one read.
+/// error as GltfAnimation
+std::shared_ptr<const GltfAnimation> load_animation(const std::shared_ptr<const GltfModel>& gltf,
+                                                    std::size_t index);
 
 /// Index of the animation with a name or index; empty: the first.
 /// error Error{bad_input} naming the file: no such animation

@@ -35,11 +35,17 @@ bool GltfMotion::moves_skin(std::uint32_t skin) const {
                              [&](std::uint32_t joint) { return joint < gltf_.nodes.size() && moves(joint); });
 }
 
+Transform GltfMotion::first_place(std::size_t node) const {
+  const GltfState state = at(0);
+  return node_to_world(gltf_, node, &state);
+}
+
 GltfState GltfMotion::at(double share) const {
   return animation_.at(share * seconds_of(last_frame_));
 }
 
 void GltfMotion::add_to_shape(Json& shape) const {
+  if (index_ > 0) shape["animation"] = std::to_string(index_);
   shape["animation_time"] = 0;
   if (last_frame_ > 1)
     shape["animation_time"] = {{"keyed", {{"1", 0}, {std::to_string(last_frame_), seconds_of(last_frame_)}}}};

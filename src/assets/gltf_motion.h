@@ -23,6 +23,8 @@ class GltfMotion {
   bool moves_skin(std::uint32_t skin) const;
   bool changes_weights(std::uint32_t node) const { return animation_.changes_weights(node); }
 
+  /// Transform of a node at the start.
+  Transform first_place(std::size_t node) const;
   /// in    share: of the duration
   GltfState at(double share) const;
 

@@ -65,7 +65,7 @@ void replace_materials(AssetScene& scene, const std::string& material, const Ass
   for (Json& shape : scene.shapes) {
     Json bare = Json::object();
     for (const char* key :
-         {"name", "file", "part", "animation_time", "transform", "normals", "vertex_colors"})
+         {"name", "file", "part", "animation", "animation_time", "transform", "normals", "vertex_colors"})
       if (shape.contains(key)) bare[key] = shape[key];
     shape = std::move(bare);
     if (scene.has_vertex_colors) shape["vertex_colors"] = false;

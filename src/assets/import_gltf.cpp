@@ -90,7 +90,7 @@ class GltfImporter {
       throw bad_file(gltf_.path, "contains no visible mesh",
                      "a scene with a node that has a mesh of triangles",
                      scene_.warnings.empty() ? "" : scene_.not_carried.back());
-    enclose(scene_, [&](const auto& visit) { for_each_point(visit); });
+    enclose_parts();
     for (const PlacedNode& node : nodes) {
       const bool had_camera = !scene_.camera.is_null();
       add_camera(gltf_, node.index, node.to_world, scene_);
@@ -112,21 +112,20 @@ class GltfImporter {
     bool is_moving;
   };
 
-  /// The first readable one.
+  /// The first readable one that changes a node.
   void choose_animation() {
     for (std::size_t i = 0; i < gltf_.count("animations") && !motion_; ++i) try {
         motion_.emplace(gltf_, i);
+        if (motion_->is_empty()) motion_.reset();
       } catch (const Error& failure) {
         scene_.warn(gltf_.path, fmt::format("animation '{}': ignored, it cannot be read: {}",
                                             animation_name(gltf_, i), failure.what()));
       }
-    if (motion_ && motion_->is_empty()) motion_.reset();
     if (!motion_) return;
     scene_.translated.push_back("animation " + in_quotes(motion_->name()) + " -> " + motion_->frames_text());
     for (std::size_t i = 0; i < gltf_.count("animations"); ++i)
       if (i != motion_->index())
-        scene_.not_carried.push_back("animation " + in_quotes(animation_name(gltf_, i)) +
-                                     ": uses the first one; the key \"animation\" selects another");
+        scene_.not_carried.push_back("animation " + in_quotes(animation_name(gltf_, i)) + ": not imported");
   }
 
   /// Roots of the default scene, or the first; without scenes all nodes without a parent.
@@ -200,8 +199,9 @@ class GltfImporter {
     const GltfPrimitive& primitive = mesh.primitives[p];
     const bool skinned = is_skinned(gltf_, placed.index, primitive),
                is_moving = is_animated(placed.index, primitive);
-    const Transform t = skinned || is_moving ? Transform{} : placed.to_world;
-    if (!(std::abs(dot(normalized(t.x), cross(normalized(t.y), normalized(t.z)))) > 1e-12))
+    const Transform t = skinned || is_moving ? Transform{} : placed.to_world,
+                    stands = is_moving && !skinned ? motion_->first_place(placed.index) : t;
+    if (!(std::abs(dot(normalized(stands.x), cross(normalized(stands.y), normalized(stands.z)))) > 1e-12))
       return scene_.warn(gltf_.path, label + ": its transform is singular; the mesh is ignored" +
                                          zero_scale_text(placed.index));
     std::string part = fmt::format("{}/{}", node.mesh, p);
@@ -232,11 +232,10 @@ class GltfImporter {
   }
 
   bool is_animated(std::size_t node, const GltfPrimitive& primitive) const {
-    return motion_ && !gltf_.instances.contains(node) &&
-           (is_skinned(gltf_, node, primitive)
-                ? motion_->moves_skin(gltf_.nodes[node].skin)
-                : motion_->moves(std::uint32_t(node)) ||
-                      (!primitive.targets.empty() && motion_->changes_weights(std::uint32_t(node))));
+    if (!motion_ || gltf_.instances.contains(node)) return false;
+    if (!primitive.targets.empty() && motion_->changes_weights(std::uint32_t(node))) return true;
+    return is_skinned(gltf_, node, primitive) ? motion_->moves_skin(gltf_.nodes[node].skin)
+                                              : motion_->moves(std::uint32_t(node));
   }
 
   /// Primitives of one node with the same medium are one body.
@@ -301,17 +300,28 @@ class GltfImporter {
     return {};
   }
 
+  /// in    poses: of moving parts, in equal steps of time
   template <class Visit>
-  void for_each_point(const Visit& visit) const {
-    constexpr int kPoses = 5;  // equal steps of time
+  void for_each_point(int poses, const Visit& visit) const {
     for (const PlacedPart& placed : parts_)
-      for (int i = 0; i < (placed.is_moving ? kPoses : 1); ++i) {
-        const GltfState state = placed.is_moving ? motion_->at(double(i) / (kPoses - 1)) : GltfState{};
+      for (int i = 0; i < (placed.is_moving ? poses : 1); ++i) {
+        const GltfState state =
+            placed.is_moving ? motion_->at(double(i) / std::max(poses - 1, 1)) : GltfState{};
         const GltfPart part =
             read_gltf_part(gltf_, placed.part, MeshUvs::unread, placed.is_moving ? &state : nullptr);
         for (const auto& triangle : part.triangles)
           for (const std::uint32_t v : triangle) visit(transform_point(placed.to_world, part.positions[v]));
       }
+  }
+
+  /// Its extent is that of the first pose; the default camera frames the motion.
+  void enclose_parts() {
+    constexpr int kPoses = 9;
+    enclose(scene_, [&](const auto& visit) { for_each_point(1, visit); });
+    if (!motion_) return;
+    const double extent = scene_.extent;
+    enclose(scene_, [&](const auto& visit) { for_each_point(kPoses, visit); });
+    scene_.extent = extent;
   }
 
   void tell_losses() {

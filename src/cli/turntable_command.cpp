@@ -28,6 +28,10 @@ std::string positions_around(const Scene& scene, int frames) {
 void turntable_command(const TurntableArguments& arguments) {
   RenderArguments render = arguments.render;
   const Scene scene = load_scene(render.scene, render.overrides);
+  for (const auto& [key, v] :
+       {std::pair("look_at", scene.camera.look_at / scene.mm_per_unit), {"up", scene.camera.up}})
+    render.overrides.push_back(
+        fmt::format("camera.{}=[{},{},{}]", key, v.x, v.y, v.z));  // they may have keys
   render.overrides.push_back(positions_around(scene, int(render.frames.size())));
   render_command(std::move(render));
 }

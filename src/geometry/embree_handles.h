@@ -41,6 +41,7 @@ struct alignas(32) RayScene::Vertex {
 
 struct RayScene::MeshView {
   std::vector<Vertex> vertices;  // shared with Embree; its own buffers are aligned to 16 bytes only
+  std::array<std::vector<Vertex>, 2> moved;       // likewise: at times 0 and 1; empty: still
   const std::array<std::uint32_t, 3>* triangles;  // Embree's buffer
   bool faceted;
   float offset;

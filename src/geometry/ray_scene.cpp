@@ -58,14 +58,16 @@ void check_device(RTCDevice device) {
   require(error == RTC_ERROR_NONE, "Embree reports an error");
 }
 
-RayScene::RayScene(const World& world, RayBuild build) : handles_(std::make_unique<Handles>()) {
+RayScene::RayScene(const World& world, RayBuild build, std::span<const MeshMotion> motions)
+    : handles_(std::make_unique<Handles>()) {
   handles_->device = rtcNewDevice(nullptr);
   if (handles_->device == nullptr) check_device(nullptr);
   require(handles_->device != nullptr, "Embree has no device");
   handles_->scene = rtcNewScene(handles_->device);
   rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(handles_->scene, quality_of(build));
-  for (const Mesh& mesh : world.meshes) attach(mesh, build);
+  for (std::size_t i = 0; i < world.meshes.size(); ++i)
+    attach(world.meshes[i], build, motions.empty() ? MeshMotion{} : motions[i]);
   rtcCommitScene(handles_->scene);
   handles_->check();
 }
@@ -80,13 +82,23 @@ void RayScene::Handles::check() {
   }
 }
 
-void RayScene::attach(const Mesh& mesh, RayBuild build) {
+void RayScene::attach(const Mesh& mesh, RayBuild build, const MeshMotion& motion) {
   RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryBuildQuality(geometry, quality_of(build));
   std::vector<Vertex> vertices(mesh.positions.size());
   for (std::size_t i = 0; i < vertices.size(); ++i)
     vertices[i] = {Vec3f(mesh.positions[i]), mesh.normals.empty() ? Vec3f{} : mesh.normals[i]};
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.data(), 0,
+  std::array<std::vector<Vertex>, 2> moved;
+  if (!motion.empty()) {
+    rtcSetGeometryTimeStepCount(geometry, 3);
+    for (unsigned end = 0; end < 2; ++end) {
+      for (const Vec3f& p : end == 0 ? motion.first : motion.last) moved[end].push_back({p, {}});
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 2 * end, RTC_FORMAT_FLOAT3,
+                                 moved[end].data(), 0, sizeof(Vertex), moved[end].size());
+    }
+  }
+  const unsigned middle = motion.empty() ? 0 : 1;
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, middle, RTC_FORMAT_FLOAT3, vertices.data(), 0,
                              sizeof(Vertex), vertices.size());
   auto* indices = static_cast<std::array<std::uint32_t, 3>*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -98,16 +110,26 @@ void RayScene::attach(const Mesh& mesh, RayBuild build) {
   rtcReleaseGeometry(geometry);
   const Bounds box = bounds(mesh);
   const float offset = float(length(box.high - box.low) * double(kRayOffsetOfSize));
-  meshes_.push_back({std::move(vertices), indices, mesh.normals.empty(), offset});
+  meshes_.push_back({std::move(vertices), std::move(moved), indices, mesh.normals.empty(), offset});
   largest_offset_ = std::max(largest_offset_, offset);
+}
+
+void RayScene::set_motion(const World& world, std::span<const MeshMotion> motions) {
+  moving_ = nullptr;
+  if (!motions.empty()) moving_ = std::make_unique<RayScene>(world, RayBuild::careful, motions);
 }
 
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 
 RayScene::Statistics RayScene::statistics() const {
-  return {handles_->intersected.rays + handles_->occluded.rays,
-          handles_->intersected.seconds() + handles_->occluded.seconds()};
+  Statistics all{handles_->intersected.rays + handles_->occluded.rays,
+                 handles_->intersected.seconds() + handles_->occluded.seconds()};
+  if (moving_ == nullptr) return all;
+  const Statistics moving = moving_->statistics();
+  all.rays += moving.rays;
+  all.seconds += moving.seconds;
+  return all;
 }
 
 // Counted by batches; reads the clock for every eighth.

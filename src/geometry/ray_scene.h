@@ -45,14 +45,27 @@ struct TracedRay {
 /// distance. `quick` builds faster and traces slower, incoherent rays most.
 enum class RayBuild { careful, quick };
 
+/// A mesh's vertices, in the world's space, at times 0 and 1 of rays; at time 1/2 it is as in the world. Empty: still.
+struct MeshMotion {
+  std::vector<Vec3f> first, last;
+  bool empty() const { return first.empty() || last.empty(); }
+};
+
 /// Ray queries against the meshes of a world. Batches of coherent rays are fastest (256 at once).
 class RayScene {
  public:
   /// Builds the structure from copies of the meshes.
-  explicit RayScene(const World& world, RayBuild build = RayBuild::careful);
+  explicit RayScene(const World& world, RayBuild build = RayBuild::careful,
+                    std::span<const MeshMotion> motions = {});
   ~RayScene();
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) = delete;
+
+  /// Adds a second structure with moving meshes, for camera rays.
+  /// in    motions: one per mesh; empty: removes it
+  void set_motion(const World& world, std::span<const MeshMotion> motions);
+  /// The structure for camera rays, with their times.
+  const RayScene& of_camera() const { return moving_ != nullptr ? *moving_ : *this; }
 
   /// Finds the first hit of each ray between near and far; far becomes its distance.
   void intersect(std::span<TracedRay> rays) const;
@@ -95,11 +108,12 @@ class RayScene {
   struct Handles;
   struct Vertex;
   struct MeshView;
-  void attach(const Mesh& mesh, RayBuild build);
+  void attach(const Mesh& mesh, RayBuild build, const MeshMotion& motion);
 
   std::unique_ptr<Handles> handles_;
   std::vector<MeshView> meshes_;
   float largest_offset_ = 0;
+  std::unique_ptr<RayScene> moving_;  // null: nothing moves
 };
 
 }  // namespace opaline

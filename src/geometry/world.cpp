@@ -180,4 +180,15 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
   }
   return world;
 }
+std::vector<Vec3f> moved_vertices(const Scene& scene, const World& world, std::size_t shape,
+                                  const Shape& moved) {
+  const CheckedMesh checked = load_mesh(scene, moved, nullptr);
+  const Mesh& mesh = world.meshes[shape];
+  if (checked.mesh.triangles != mesh.triangles || checked.mesh.positions.size() != mesh.positions.size())
+    return {};
+  std::vector<Vec3f> vertices;
+  for (const Vec3d& p : checked.mesh.positions) vertices.emplace_back(into_world(world, p));
+  return vertices;
+}
+
 }  // namespace opaline

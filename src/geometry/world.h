@@ -55,4 +55,9 @@ World make_world(const Scene& scene);
 World update_world(const Scene& scene, const World& old, std::span<const std::optional<std::size_t>> kept,
                    std::size_t& loaded, std::span<MeshMemory* const> memories = {});
 
+/// Vertices of a shape at another place, in the world's space; empty: the triangles differ.
+/// error as make_mesh
+std::vector<Vec3f> moved_vertices(const Scene& scene, const World& world, std::size_t shape,
+                                  const Shape& moved);
+
 }  // namespace opaline

@@ -138,6 +138,16 @@ void resolve(const Document& document, Node& node) {
   for (Node& child : node.children) resolve(document, child);
 }
 
+void resolve_at_shutter(const Document& document, Node& node, double time) {
+  if (node.kind == Node::Kind::object && find_member(node, "keyed") != nullptr) try {
+      Node value = KeyedValue(document, node).at(document.frame + time);
+      node = std::move(value);
+    } catch (const Error&) {
+      return resolve(document, node);
+    }
+  for (Node& child : node.children) resolve_at_shutter(document, child, time);
+}
+
 bool changes(const Node& node) {
   const bool is_keyed = node.kind == Node::Kind::object && find_member(node, "keyed") != nullptr;
   const bool is_file_a_frame =
@@ -167,6 +177,12 @@ std::size_t count_camera_frames(const Document& document) {
       return 1;
   }
   return keys.empty() ? 1 : std::size_t(std::int64_t(*keys.rbegin()) - *keys.begin()) + 1;
+}
+
+void resolve_at_shutter(Document& document, double time) {
+  for (Node& part : document.root.children)
+    if (part.key == "camera" || part.key == "shapes") resolve_at_shutter(document, part, time);
+  resolve_keyed_values(document);
 }
 
 void resolve_keyed_values(Document& document) {

@@ -13,6 +13,10 @@ namespace opaline {
 /// error Error{bad_input} at the value: no keys, a key other than a frame, values without interpolation
 void resolve_keyed_values(Document& document);
 
+/// The same, but values of the camera and of shapes at this time after the frame, in frames; those without interpolation
+/// stay as in the frame.
+void resolve_at_shutter(Document& document, double time);
+
 /// Scene::camera_frames of an unresolved tree.
 std::size_t count_camera_frames(const Document& document);
 

@@ -336,6 +336,29 @@ std::string unfitted(const AssetDefaults& defaults, std::span<const std::string>
 
 }  // namespace
 
+namespace {
+
+/// Opening and closing of the shutter; empty: the camera and the shapes stay as in the scene.
+std::vector<ShutterEnd> shutter_ends(const Document& at_frame, const Scene& scene) {
+  if (scene.film.shutter == 0) return {};
+  std::vector<ShutterEnd> ends;
+  bool moves = false;
+  for (const double time : {-.5 * scene.film.shutter, .5 * scene.film.shutter}) {
+    Document document = merged_document(at_frame.text, at_frame.file, at_frame.overrides, at_frame.frame);
+    resolve_at_shutter(document, time);
+    Scene end = read_at_wavelengths(document);
+    const bool is_still = end.camera == scene.camera &&
+                          std::ranges::equal(end.shapes, scene.shapes, [](const Shape& a, const Shape& b) {
+                            return a.source == b.source && a.to_world == b.to_world;
+                          });
+    moves |= !is_still;
+    ends.push_back({std::move(end.camera), std::move(end.shapes)});
+  }
+  return moves ? ends : std::vector<ShutterEnd>{};
+}
+
+}  // namespace
+
 Scene load_scene(const std::string& path, std::span<const std::string> overrides, int frame) {
   if (!is_asset_name(path)) return parse_scene(read_scene_text(path), path, overrides, frame);
   const ImportedAsset asset = import_asset(path, std::filesystem::path(path).filename().string());
@@ -389,6 +412,7 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
     resolve_keyed_values(document);
   }
   Scene scene = read_at_wavelengths(document);
+  scene.shutter = shutter_ends(document, scene);
   scene.camera_frames = camera_frames;
   scene.warnings.insert(scene.warnings.begin(), document.warnings.begin(), document.warnings.end());
   for (std::string& warning : texture_warnings(scene)) scene.warnings.push_back(std::move(warning));

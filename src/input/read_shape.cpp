@@ -22,7 +22,9 @@ MeshFile read_mesh_file(const ObjectReader& shape, const ShapeContext& context) 
   if (const auto crease = shape.find("crease_angle")) mesh.crease_angle = crease->number();
   if (const auto rounds = shape.find("subdivide")) mesh.subdivide = int(rounds->whole_number());
   const auto animation = shape.find("animation"), time = shape.find("animation_time");
-  if (animation && !time) animation->fail_key("has no effect without 'animation_time'");
+  if (time && mesh.fit_size)
+    time->fail_key("cannot be combined with 'fit_size', which would scale each pose to one size",
+                   "a \"scale\" in 'transform', or 'mm_per_unit'");
   if (time) mesh.pose = AnimationTime{animation ? animation->string() : "", time->number()};
   return mesh;
 }

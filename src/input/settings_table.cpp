@@ -197,6 +197,10 @@ std::span<const Member<Film>> film_members() {
           "denoise", flag, "", kFiniteNumber, "", {},
           "removes noise with Open Image Denoise, if it is installed; the diffuse light of "
           "translucent shapes changes by at most twice its estimated error"),
+      member<&Film::shutter>(
+          "shutter", number, "frames", kUnitInterval, "", {view},
+          "motion blur of the camera and of shapes with keyed values: time of exposure around the "
+          "frame; 0.5 is a shutter of 180 degrees. Light stays that of the frame"),
   };
   return table;
 }

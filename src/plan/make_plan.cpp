@@ -253,6 +253,19 @@ std::size_t bytes_of_denoiser(const Film& film) {
   return 8'000'000 + std::min<std::size_t>(550 * pixels, 325'000'000) + 24 * pixels;
 }
 
+/// A second structure for camera rays, if any shape moves while the shutter is open.
+std::size_t bytes_of_motion(const Scene& scene, const World& world) {
+  std::size_t bytes = 0;
+  bool moves = false;
+  for (std::size_t i = 0; i < world.meshes.size() && !scene.shutter.empty(); ++i) {
+    bytes += world.meshes[i].positions.size() * 150 + world.meshes[i].triangles.size() * 300;
+    for (const ShutterEnd& end : scene.shutter)
+      moves = moves || end.shapes[i].source != scene.shapes[i].source ||
+              end.shapes[i].to_world != scene.shapes[i].to_world;
+  }
+  return moves ? bytes : 0;
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const World& world) {
@@ -288,7 +301,7 @@ Plan make_plan(const Scene& scene, const World& world) {
         2 * (mesh.uvs.size() * sizeof(CornerUvs) + mesh.tangents.size() * sizeof(CornerTangents) +
              mesh.colors.size() * sizeof(CornerColors));
   }
-  plan.bytes += picture_bytes(scene, environments);
+  plan.bytes += bytes_of_motion(scene, world) + picture_bytes(scene, environments);
   const std::size_t without_bodies = plan.bytes;
   std::size_t samples = 0, caches = 0;
   double temporary = 0;  // one body after the other

@@ -9,6 +9,7 @@ Scene at_other_wavelengths(const Scene& scene, std::size_t index) {
   Scene other = scene.other_wavelengths[index];
   other.camera = scene.camera;
   other.film = scene.film;
+  other.shutter = scene.shutter;
   other.settings = scene.settings;
   for (std::size_t l = 0; l < other.lights.size() && l < scene.lights.size(); ++l)
     if (emission(scene.lights[l]) == Rgb{}) other.lights[l] = with_emission(other.lights[l], {});

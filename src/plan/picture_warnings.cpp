@@ -46,11 +46,12 @@ std::size_t channel(const Image& image, const char* name) {
 std::vector<float> brightness(const Image& image, std::size_t step) {
   const std::size_t stride = image.channels.size(), count = image.pixels.size() / stride;
   const std::size_t r = channel(image, "R"), g = channel(image, "G"), b = channel(image, "B"),
-                    coverage = channel(image, "A");
+                    coverage = channel(image, "A"), depth = channel(image, "Z");
   std::vector<float> values;
   for (std::size_t p = 0; p < count; p += step) {
     const float* pixel = image.pixels.data() + p * stride;
-    if (pixel[coverage] > 0) values.push_back(std::max({pixel[r], pixel[g], pixel[b]}) / pixel[coverage]);
+    if (pixel[coverage] > 0 && pixel[depth] != 0)
+      values.push_back(std::max({pixel[r], pixel[g], pixel[b]}) / pixel[coverage]);
   }
   return values;
 }
@@ -337,6 +338,8 @@ std::string way_to_turn(const Scene& scene, const World& world, const Light& lig
 std::vector<std::string> picture_warnings(const Scene& scene, const World& world, const Image& image) {
   if (world.meshes.empty() || scene.lights.empty()) return {};  // the plan warns of this
   std::vector<float> values = sampled_brightness(image);
+  const auto is_hidden = [](const Shape& shape) { return !shape.is_seen || shape.catches_shadows; };
+  if (values.empty() && std::ranges::any_of(scene.shapes, is_hidden)) return {};
   if (values.empty()) return {nothing_in_view(scene, world)};
   if (std::string backs = backs_are_seen(scene, world, image); !backs.empty()) return {std::move(backs)};
   const double gain = std::exp2(scene.film.exposure);

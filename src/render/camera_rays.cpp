@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-constexpr std::uint64_t kLensSeed = 0x6c656e73;
+constexpr std::uint64_t kLensSeed = 0x6c656e73, kTimeSeed = 0x74696d65;
 
 // The inverse of the filter's cumulative distribution along one axis, u in [0, 1).
 double filter_place(PixelFilter filter, double u) {
@@ -64,10 +64,19 @@ CameraRays::CameraRays(const Camera& camera, const Film& film, const World& worl
   }
 }
 
+CameraRays::CameraRays(const Scene& scene, const World& world) : CameraRays(scene.camera, scene.film, world) {
+  has_shutter_ = !scene.shutter.empty();
+  const auto moves = [&](const ShutterEnd& end) { return !(end.camera == scene.camera); };
+  if (std::ranges::any_of(scene.shutter, moves))
+    for (const ShutterEnd& end : scene.shutter) ends_.emplace_back(end.camera, scene.film, world);
+}
+
 Ray CameraRays::ray_through(double across, double below) const {
   const Vec3d film = right_ * across + down_ * below;
-  if (is_parallel_) return {Vec3f(position_ + film), Vec3f(forward_)};
-  return {Vec3f(position_), Vec3f(forward_ + film)};
+  Ray ray = is_parallel_ ? Ray(Vec3f(position_ + film), Vec3f(forward_))
+                         : Ray(Vec3f(position_), Vec3f(forward_ + film));
+  ray.time = .5f;  // the middle of the exposure
+  return ray;
 }
 
 // In the unit disc, or the polygon of the blades inside it. Radical inverses are independent of the lattice of
@@ -85,13 +94,33 @@ CameraRays::Place CameraRays::lens_place(int x, int y, int sample) const {
           radius * ((along - 1) * std::cos(a) - along * std::cos(b))};
 }
 
+// Between the camera in the middle of the exposure and one of its ends.
 Ray CameraRays::ray(int x, int y, int sample) const {
+  constexpr std::uint64_t kTimeBase = 5;  // other than those of the lens
+  Ray ray = still_ray(x, y, sample);
+  if (!has_shutter_) return ray;
+  const std::uint64_t bits = hash_bits(kTimeSeed, std::uint64_t(y) * row_pixels_ + std::uint64_t(x));
+  const double time =
+      fraction(radical_inverse(std::uint64_t(sample), kTimeBase) + double(bits >> 32) * 0x1p-32);
+  if (!ends_.empty()) {
+    const Ray end = ends_[time < .5 ? 0 : 1].still_ray(x, y, sample);
+    const auto share = float(std::abs(2 * time - 1));
+    ray.origin = ray.origin * (1 - share) + end.origin * share;
+    ray.direction = ray.direction * (1 - share) + end.direction * share;
+  }
+  ray.time = float(time);
+  return ray;
+}
+
+Ray CameraRays::still_ray(int x, int y, int sample) const {
   const Place& place = places_[std::size_t(sample)];
-  const Ray middle = ray_through(x + 0.5 + place.x - center_x_, y + 0.5 + place.y - center_y_);
-  if (lens_radius_ == 0) return middle;
+  Ray ray = ray_through(x + 0.5 + place.x - center_x_, y + 0.5 + place.y - center_y_);
+  if (lens_radius_ == 0) return ray;
   const auto [right, down] = lens_place(x, y, sample);
   const Vec3d lens = lens_right_ * right + lens_down_ * down;
-  return {Vec3f(Vec3d(middle.origin) + lens), Vec3f(Vec3d(middle.direction) - lens * per_focus_distance_)};
+  ray.origin = Vec3f(Vec3d(ray.origin) + lens);
+  ray.direction = Vec3f(Vec3d(ray.direction) - lens * per_focus_distance_);
+  return ray;
 }
 
 Ray CameraRays::middle_ray(int x, int y) const {
@@ -105,7 +134,8 @@ CameraRays::FilmPlace CameraRays::film_place(const Vec3d& point) const {
 }
 
 void intersect_from_camera(const Scene& scene, const RayScene& scene_rays, std::span<TracedRay> rays) {
-  scene_rays.intersect(rays);
+  const RayScene& all = scene_rays.of_camera();
+  all.intersect(rays);
   if (std::ranges::all_of(scene.shapes, &Shape::is_seen)) return;
   constexpr int kMostSurfaces = 1000;
   constexpr float kStep = 1e-6f;  // relative to the distance; the same surface may be met again
@@ -124,7 +154,7 @@ void intersect_from_camera(const Scene& scene, const RayScene& scene_rays, std::
       further.push_back({next, {}});
     }
     if (stopped.empty()) return;
-    if (i < kMostSurfaces) scene_rays.intersect(further);
+    if (i < kMostSurfaces) all.intersect(further);
     for (std::size_t k = 0; k < stopped.size(); ++k) rays[stopped[k]] = further[k];
   }
 }

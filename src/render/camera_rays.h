@@ -24,6 +24,8 @@ PixelWidth pixel_width(const Camera& camera, const Film& film, const World& worl
 class CameraRays {
  public:
   CameraRays(const Camera& camera, const Film& film, const World& world);
+  /// With the shutter of the scene: rays have times from 0 to 1, and the camera moves.
+  CameraRays(const Scene& scene, const World& world);
 
   /// x, y: pixel in the full image; sample in [0, samples_per_pixel).
   Ray ray(int x, int y, int sample) const;
@@ -45,6 +47,8 @@ class CameraRays {
     double x, y;
   };
   Ray ray_through(double across, double below) const;
+  /// The same of a still camera.
+  Ray still_ray(int x, int y, int sample) const;
   Place lens_place(int x, int y, int sample) const;
 
   Vec3d position_, forward_, right_, down_;  // right_ and down_: one pixel on the film plane at depth 1
@@ -57,6 +61,8 @@ class CameraRays {
   double lens_radius_, per_focus_distance_;
   int blades_;
   std::vector<Place> places_;  // relative to the pixel's centre
+  bool has_shutter_ = false;
+  std::vector<CameraRays> ends_;  // when the shutter opens and closes; empty: the camera stays
 };
 
 /// First hits of camera rays: rays pass through shapes hidden from the camera.

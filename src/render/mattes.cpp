@@ -160,7 +160,7 @@ void add_mattes(const RenderInput& input, Image& picture) {
     for (const std::string& name : layers[k].names) ids[k].push_back(matte_id(name));
   }
   add_channels(picture, channels);
-  const CameraRays camera(input.scene.camera, film, input.world);
+  const CameraRays camera(input.scene, input.world);
   const std::vector<Light> lights = hiding_lights(input);
   const std::vector<Rectangle> tiles = tiles_of(film);
   const std::size_t step = picture.channels.size();

@@ -257,14 +257,20 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
         own.rays.reserve(rays.size());
       }
       SurfacePoint point = holds_points ? held->points[hits - 1] : point_of(hit, input_.rays);
-      // An opaque sheet has two equal sides; a translucent one is lit and seen from outside.
-      const bool from_behind = !appearances_[hit.mesh].translucent && dot(point.geometric, ray.direction) > 0;
+      // An opaque sheet has two equal sides; a translucent one is lit and seen from outside. A moving one shows the side
+      // that it turns to the ray at the ray's time.
+      const bool may_move = !input_.scene.shutter.empty();
+      const Vec3f& outwards = may_move ? hit.edges_cross : point.geometric;
+      const bool from_behind = !appearances_[hit.mesh].translucent && dot(outwards, ray.direction) > 0;
       if (from_behind) {
         point.geometric = -point.geometric;
         point.normal = -point.normal;
       }
       // Back along the ray: on an edge, the normal alone would lead rays into the other face's plane.
-      point.position -= normalized(ray.direction) * point.offset;
+      if (may_move && dot(point.geometric, ray.direction) > 0)
+        point.position += point.geometric * point.offset;
+      else
+        point.position -= normalized(ray.direction) * point.offset;
       if (!textures_.empty()) add_textures(batch, i, from_behind, point, own);
       own.points.push_back(point);
       own.hits.push_back(hit);

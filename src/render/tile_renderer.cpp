@@ -68,7 +68,7 @@ Image empty_image(const Rectangle& part, const Film& film, std::vector<std::stri
 }
 
 TileRenderer::TileRenderer(const RenderInput& input, const Shader& shader)
-    : input_(input), camera_(input.scene.camera, input.scene.film, input.world), shader_(shader) {}
+    : input_(input), camera_(input.scene, input.world), shader_(shader) {}
 
 // Intersects the rays, or copies cached hits.
 void TileRenderer::trace(std::span<TracedRay> rays, HeldView::Batch* held) const {

@@ -56,6 +56,7 @@ Scene coarse_scene(Scene scene, const CoarseGrid& grid) {
   if (camera.orthographic_height) *camera.orthographic_height *= wider[1];
   for (std::size_t axis = 0; axis < 2; ++axis) camera.shift[axis] /= wider[axis];
   camera.aperture = 0;
+  scene.shutter.clear();
   if (scene.film.crop) scene.film.crop = grid.around(rendered_part(scene.film));
   scene.film.resolution = grid.coarse;
   scene.film.samples_per_pixel = 1;

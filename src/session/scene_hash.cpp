@@ -36,6 +36,7 @@ void add_values(const Scene& scene, const Add& add) {
   if (!scene.wavelengths) return;
   const auto add_rgb = [&](const Rgb& value) { add(fmt::format("{} {} {}", value.x, value.y, value.z)); };
   for (const Light& light : scene.lights) add_rgb(emission(light));
+  if (scene.backdrop) add_rgb(*scene.backdrop);
   for (const Shape& shape : scene.shapes) {
     add_rgb(shape.reflectance);
     add_rgb(shape.fuzz.color);

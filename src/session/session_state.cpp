@@ -328,7 +328,7 @@ RenderResult Session::State::spectral_image(Monitor* monitor) {
 
 /// Valid cache of earlier images; null: caching is off.
 HeldView* Session::State::held_view() {
-  if (!holds_view_) {
+  if (!holds_view_ || !scene_.shutter.empty()) {
     view_ = {};
     return nullptr;
   }
@@ -364,13 +364,34 @@ HeldView* Session::State::held_view() {
 
 void Session::State::update_rays() {
   const auto same = [](const MeshKeys& a, const MeshKeys& b) { return a.all == b.all; };
-  if (rays_ != nullptr && rays_build_ == plan_.rays && std::ranges::equal(rays_keys_, mesh_keys_, same))
-    return;
-  rays_ = nullptr;  // never both in memory
-  rays_build_ = plan_.rays;
-  rays_ = std::make_unique<RayScene>(*world_, rays_build_);
-  ++work_.ray_builds;
-  rays_keys_ = mesh_keys_;
+  if (rays_ == nullptr || rays_build_ != plan_.rays || !std::ranges::equal(rays_keys_, mesh_keys_, same)) {
+    rays_ = nullptr;  // never both in memory
+    rays_build_ = plan_.rays;
+    rays_ = std::make_unique<RayScene>(*world_, rays_build_);
+    ++work_.ray_builds;
+    rays_keys_ = mesh_keys_;
+    moved_by_.clear();
+  }
+  if (moved_by_ == scene_.shutter) return;
+  moved_by_.clear();
+  rays_->set_motion(*world_, mesh_motions());
+  moved_by_ = scene_.shutter;
+}
+
+/// Motions while the shutter is open; empty: no shape moves.
+std::vector<MeshMotion> Session::State::mesh_motions() const {
+  std::vector<MeshMotion> motions(scene_.shapes.size());
+  for (std::size_t i = 0; i < motions.size() && !scene_.shutter.empty(); ++i) {
+    const Shape &first = scene_.shutter[0].shapes[i], &last = scene_.shutter[1].shapes[i],
+                &now = scene_.shapes[i];
+    const auto is_there = [&](const Shape& end) {
+      return end.source == now.source && end.to_world == now.to_world;
+    };
+    if (is_there(first) && is_there(last)) continue;
+    motions[i] = {moved_vertices(scene_, *world_, i, first), moved_vertices(scene_, *world_, i, last)};
+  }
+  if (std::ranges::all_of(motions, &MeshMotion::empty)) return {};
+  return motions;
 }
 
 /// Creates a body for each one of the plan, with the cached results of the one with the same name.

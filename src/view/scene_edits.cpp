@@ -96,7 +96,7 @@ bool moves_camera(const std::string& path) {
   return path == "camera" || path.starts_with("camera.position") || path.starts_with("camera.look_at");
 }
 
-/// Removes edits of a shape's opaque surface that its medium replaces, and vice versa.
+/// Removes edits of a shape's opaque surface, replaced by a medium, and vice versa.
 void drop_replaced_surface(std::vector<std::string>& edits, const std::string& path) {
   const std::size_t dot = path.rfind('.');
   if (!path.starts_with("shapes.") || dot == path.npos) return;
@@ -280,6 +280,7 @@ std::optional<Scene> SceneEdits::reference() const {
 SceneEdits::Edits SceneEdits::all_overrides(const Edits& edits) const {
   Edits all = placed_;
   all.insert(all.end(), given_.begin(), given_.end());
+  for (const std::string& edit : edits) drop_replaced_surface(all, edit.substr(0, edit.find('=')));
   all.insert(all.end(), edits.begin(), edits.end());
   return all;
 }

@@ -161,6 +161,42 @@ TEST(GltfAnimations, CamerasAndLightsMove) {
   EXPECT_GT(length(framed.camera.position - framed.camera.look_at), 60'000);
 }
 
+// Claim: bodies that an animation hides by a scale of 0 are specks: a frame has them all, and moves none aside. Fails if: the
+// frame is refused, for a mesh needs an area.
+TEST(GltfAnimations, HiddenBodiesAreSpecks) {
+  Asset asset = cube_asset();
+  add_channel(asset, 0, "scale", {0, 1}, {0, 0, 0, 2, 2, 2});
+  const ScratchFolder folder;
+  const Scene scene = frame_of(asset, folder, 1);
+  EXPECT_NEAR(surface_area(make_mesh(scene.shapes.at(0)).mesh), 24e6 * 4e-6, 1e-3);
+  EXPECT_EQ(frame_of(asset, folder, 25).shapes.size(), 1u);
+}
+
+// Claim: morph targets of a skinned mesh play, too, where no joint moves. By hand. Fails if: joints alone are asked for.
+TEST(GltfAnimations, FacesOfSkinnedMeshesMove) {
+  Asset asset;
+  const int corners = asset.accessor<float>("VEC3", kFloat, {0, 0, 0, 2, 0, 0, 0, 2, 0});
+  const int up = asset.accessor<float>("VEC3", kFloat, {0, 0, 2, 0, 0, 2, 0, 0, 2});
+  const int joints = asset.accessor<std::uint8_t>("VEC4", kUnsignedByte, std::vector<std::uint8_t>(12));
+  const int weights =
+      asset.accessor<float>("VEC4", kFloat, std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  asset.mesh({{"attributes", {{"POSITION", corners}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}},
+              {"targets", {{{"POSITION", up}}}}});
+  asset.root(asset.node({{"mesh", 0}, {"skin", 0}}));
+  asset.root(asset.node({{"name", "joint"}}));
+  asset.json["skins"] = Json::array({{{"joints", {1}}}});
+  add_channel(asset, 0, "weights", {0, 1}, {0, 1});
+  expect_near(middle_at(asset, 25), {1, 1, 2});
+}
+
+// Claim: --size is that of the asset at its start, not of its path. By hand: a cube of 2 m that moves by 40 m. Fails if: the
+// box around the motion is scaled.
+TEST(GltfAnimations, SizeIsOfThePose) {
+  Asset asset = cube_asset();
+  add_channel(asset, 0, "translation", {0, 1}, {0, 0, 0, 0, 40, 0});
+  EXPECT_NEAR(imported(asset).defaults.extent, 2, 1e-6);
+}
+
 // Claim: an animation that cannot be read leaves the asset at rest with a warning that names the record; the next one is
 // used. One without a node is none. Fails if: the asset is refused, or stands still without a word.
 TEST(GltfAnimations, BrokenOnesAreWarnings) {
@@ -199,6 +235,12 @@ TEST(GltfAnimations, BrokenOnesAreWarnings) {
            }),
            "target.node refers to nothing");
   EXPECT_EQ(warning([](Asset& a) { a.json["animations"][0]["channels"][0]["target"].erase("node"); }), "");
+  has_text(warning([](Asset& a) { a.json["animations"][0] = 5; }), "animation '0': ignored");
+  Asset second = cube_asset();
+  add_channel(second, 0, "translation", {0, 1}, {0, 0, 0, 1, 0, 0});
+  add_channel(second, 0, "translation", {0, 1}, {0, 0, 0, 0, 8, 0}, "LINEAR", 1);
+  second.json["animations"][0]["channels"][0]["sampler"] = 5;
+  expect_near(middle_at(second, 13), {0, 4, 0});
 }
 
 // Claim: a scene's "animation_time" and "animation" choose a pose by name or index; the file and the mistake are named.
@@ -234,7 +276,7 @@ TEST(GltfAnimations, ScenesChooseThePose) {
   };
   has_text(mistake(R"("animation_time": 0, "animation": "rum")"),
            "a.glb: has no such animation (did you mean 'run'?)");
-  has_text(mistake(R"("animation": "run")"), "has no effect without 'animation_time'");
+  has_text(mistake(R"("animation_time": 0, "fit_size": 5)"), "cannot be combined with 'fit_size'");
   has_text(mistake(R"("animation_time": "soon")"), "animation_time");
   asset.root(asset.node({{"mesh", 0}}));
   put_bytes(folder.file("a.glb"), asset.glb());

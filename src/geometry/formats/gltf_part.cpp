@@ -248,7 +248,7 @@ GltfPart read_gltf_part(const std::string& path, const std::string& part, MeshUv
                         const std::optional<AnimationTime>& pose) {
   const std::shared_ptr<const GltfModel> gltf = load_gltf(path);
   if (!pose) return read_gltf_part(*gltf, part, uvs);
-  const GltfState state = GltfAnimation(*gltf, find_animation(*gltf, pose->animation)).at(pose->seconds);
+  const GltfState state = load_animation(gltf, find_animation(*gltf, pose->animation))->at(pose->seconds);
   return read_gltf_part(*gltf, part, uvs, &state);
 }
 

@@ -126,13 +126,14 @@ export class Knobs {
     const select = make("select", {ariaLabel: path}, make("option", {value: "", textContent: "opaque"}),
       ...(media.length ? [make("optgroup", {label: "media of the scene"}, ...options(media))] : []),
       make("optgroup", {label: "measured media"}, ...options(measured)));
-    select.value = this.scene.shapes[i].medium || "";
     select.onchange = () => {
       const name = select.value, added = measured.includes(name) ? {[`media.${name}`]: {preset: name}} : {};
       this.set(name ? {...added, [path]: name} : {[path.replace(/medium$/, "reflectance")]: .5}, newStroke());
     };
-    return make("label", {className: "knob", title: "opaque, or a translucent medium inside a closed mesh"},
+    const root = make("label", {className: "knob", title: "opaque, or a translucent medium inside a closed mesh"},
       make("span", {className: "name", textContent: "material"}), select);
+    this.knobs.push({path, root, value: (s) => s.shapes[i].medium, show: (medium) => { select.value = medium || ""; }});
+    return root;
   }
 
   mediumRows(name) {
