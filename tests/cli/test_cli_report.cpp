@@ -261,7 +261,8 @@ TEST(CliReport, RatiosStaySmall) {
   const SceneFolder folder;
   const Outcome outcome =
       run_program({"bench", folder.scene, "--csv", folder.file("out.csv"), "--quick", "--resolution",
-                   "192x192", "--set", "settings.samples=20000", "--reference-error", "50%"});
+                   "192x192", "--set", "settings.samples=20000", "--reference-error", "50%", "--set",
+                   R"(shapes.ball={"name": "ball", "sphere": {"radius": 10}, "medium": "marble"})"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const CsvTable table = parse_csv(bytes_of(folder.file("out.csv")), "out.csv");
   ASSERT_EQ(cell(table, 3, "rung"), "hierarchical");  // the dual tree: few pixels
