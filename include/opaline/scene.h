@@ -468,7 +468,7 @@ struct Scene {
   Camera camera;
   Film film;
   Settings settings;
-  /// Radiance behind all shapes, visible to camera rays alone; none: that of surroundings and environments.
+  /// Radiance behind all shapes, visible to camera rays alone; none: surroundings and environments.
   std::optional<Rgb> backdrop{};
   std::vector<ShutterEnd> shutter{};  ///< opening and closing; empty: nothing moves, or no motion blur
   /// Frames from the first key of the camera or film to the last, if nothing else is keyed: images of the

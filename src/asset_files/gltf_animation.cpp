@@ -33,7 +33,7 @@ std::vector<double> slerp(std::span<const double> a, std::span<const double> b, 
 
 /// A body scaled to 0, to hide it, becomes a speck: a mesh needs an area, and a camera its directions.
 Vec3d kept_open(Vec3d scale, std::span<const double> values) {
-  constexpr double kSpeck = 1e-3;  // of the largest scale
+  constexpr double kSpeck = 1e-3;  // relative to the largest scale
   double largest = 0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
   for (std::size_t axis = 0; axis < 3; ++axis)

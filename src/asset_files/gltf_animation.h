@@ -22,7 +22,7 @@ struct GltfState {
 
 class GltfAnimation {
  public:
-  /// error Error{bad_input} naming the record: a dangling reference, times that decrease, the wrong number of values, a
+  /// error Error{bad_input} naming the record: a dangling reference, decreasing times, the wrong number of values, a
   ///       node with a matrix
   GltfAnimation(const GltfModel& gltf, std::size_t index);
 
@@ -55,7 +55,7 @@ class GltfAnimation {
   const GltfModel& gltf_;
   std::vector<Channel> channels_;
   double duration_ = 0;
-  std::size_t numbers_ = 0;  // of all channels
+  std::size_t numbers_ = 0;  // all channels together
 };
 
 /// The animation's name, or its index.

@@ -112,7 +112,7 @@ class GltfImporter {
     bool is_moving;
   };
 
-  /// The first readable one that changes a node.
+  /// The first readable one with an effect.
   void choose_animation() {
     for (std::size_t i = 0; i < gltf_.count("animations") && !motion_; ++i) try {
         motion_.emplace(gltf_, i);
@@ -314,7 +314,7 @@ class GltfImporter {
       }
   }
 
-  /// Its extent is that of the first pose; the default camera frames the motion.
+  /// The extent belongs to the first pose; the default camera frames the motion.
   void enclose_parts() {
     constexpr int kPoses = 9;
     enclose(scene_, [&](const auto& visit) { for_each_point(1, visit); });

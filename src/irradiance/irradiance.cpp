@@ -155,11 +155,8 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
   if (input.is_together) batch.share_shadows();
   const Halves halves(batch.samples());
   std::vector<std::array<double, 2>> sums;  // by halves of a point's rays, and by light
-  std::vector<RgbF> colours;                // without shadows
+  std::vector<RgbF> colours;
   for (const Light& light : lights) colours.emplace_back(emission(light));
-  const auto add_unshadowed = [&](std::size_t light, std::size_t point, float free) {
-    if (!input.unshadowed.empty()) input.unshadowed[point] += colours[light] * free;
-  };
   batch.reserve(std::min(batch_size, n));
   for (std::size_t begin = 0, count = 0; begin < n; begin += count) {
     count = std::min(n - begin, batch_size);
@@ -168,17 +165,22 @@ std::vector<PointTransfers> transfers_to(const PointIrradianceInput& input, std:
     };
     while (begin + count < n && is_same_pixel(begin + count)) ++count;
     for (std::size_t i = begin; i < begin + count; ++i) add_point(input, i, batch);
-    if (batch.samples() < 2) {
-      batch.trace_lights([&](std::size_t l, std::size_t p, int, float e, float free) {
-        transfers[l].weights[begin + p] = e;
-        add_unshadowed(l, begin + p, free);
+    const auto trace = [&](const auto& use) {
+      if (input.unshadowed.empty())
+        return batch.trace_lights(
+            [&](std::size_t l, std::size_t p, int s, float e, float) { use(l, p, s, e); });
+      batch.trace_lights([&](std::size_t l, std::size_t p, int s, float e, float free) {
+        use(l, p, s, e);
+        input.unshadowed[begin + p] += colours[l] * free;
       });
+    };
+    if (batch.samples() < 2) {
+      trace([&](std::size_t l, std::size_t p, int, float e) { transfers[l].weights[begin + p] = e; });
       continue;
     }
     sums.assign(count * lights.size(), {});
-    batch.trace_lights([&](std::size_t l, std::size_t p, int s, float e, float free) {
+    trace([&](std::size_t l, std::size_t p, int s, float e) {
       sums[l * count + p][halves.of(s)] += double(e);
-      add_unshadowed(l, begin + p, free);
     });
     for (std::size_t l = 0; l < lights.size(); ++l)
       for (std::size_t p = 0; p < count; ++p) {

@@ -258,7 +258,7 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
       }
       SurfacePoint point = holds_points ? held->points[hits - 1] : point_of(hit, input_.rays);
       // An opaque sheet has two equal sides; a translucent one is lit and seen from outside. A moving one shows the side
-      // that it turns to the ray at the ray's time.
+      // turned to the ray at the time of the ray.
       const bool may_move = !input_.scene.shutter.empty();
       const Vec3f& outwards = may_move ? hit.edges_cross : point.geometric;
       const bool from_behind = !appearances_[hit.mesh].translucent && dot(outwards, ray.direction) > 0;

@@ -118,7 +118,7 @@ export class Knobs {
       .map((row) => this.knob(section, row.key, `${path}.${row.key}`, (s) => (owner(s) || {})[row.key]));
   }
 
-  // Opaque, a medium of the scene, or a measured one, which becomes one of the scene.
+  // Opaque, a medium of the scene, or a measured one, added to the scene.
   materialRow(i) {
     const media = Object.keys(this.scene.media || {}), path = `${this.pathOf("shapes", i)}.medium`;
     const measured = [...this.presets.keys()].filter((name) => !media.includes(name));
