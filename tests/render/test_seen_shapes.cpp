@@ -119,13 +119,14 @@ TEST(ShadowCatchers, AWallTakesHalfOfTheSky) {
   EXPECT_NEAR(at(image, 16, "R"), .5, .02);
 }
 
-// Claim: alpha on the edge between a body and a catcher leaves the body's layers alone: its albedo there is its own. Fails if:
-// the layers are divided by alpha.
+// Claim: alpha on the edge between a body and its shadow on a catcher leaves the body's layers alone: its albedo there is its
+// own. Fails if: the layers are divided by alpha.
 TEST(ShadowCatchers, EdgesKeepTheirLayers) {
   const ScratchFolder folder;
-  const Image image = picture_of(folder, kFloor,
-                                 {"shapes.floor.shadow_catcher=true", "shapes.roof.reflectance=0.3",
-                                  "film.samples_per_pixel=16", "film.resolution=[33, 32]"});
+  const Image image = picture_of(
+      folder, kFloor,
+      {"shapes.floor.shadow_catcher=true", "shapes.roof.reflectance=0.3", "lights.above.direction=[1, -1, 0]",
+       "film.samples_per_pixel=16", "film.resolution=[33, 32]"});
   for (int x = 0; x < 33; ++x)
     if (const float albedo = at(image, x, "albedo.R"); albedo > 0) {
       EXPECT_NEAR(albedo, .3, 1e-5) << x;
