@@ -230,7 +230,8 @@ TEST(Textures, MixAsTheySay) {
         const std::vector<std::string> overrides{
             "media.m.sigma_a=0.3", "settings.samples=80000", "camera.field_of_view=" + field_of_view,
             "film.crop=[" + std::to_string(x) + ",16," + std::to_string(x + 1) + ",17]"};
-        session.edit(parse_scene(ball_scene(tint, .5, method), folder.file("scene.json"), overrides));
+        session.edit(with_few_triangles(
+            parse_scene(ball_scene(tint, .5, method), folder.file("scene.json"), overrides)));
         return double(channel(session.render().image, 0, 0, "diffuse.G"));
       };
       const auto ratio = [&](int x, const std::string& field_of_view) {
@@ -343,7 +344,7 @@ TEST(Textures, AreEditedInASession) {
                                      std::filesystem::file_time_type() + std::chrono::hours(value));
   };
   const std::string text = ball_scene(R"("tint": {"texture": "paint.png"})", .5);
-  const auto scene = [&] { return parse_scene(text, folder.file("scene.json"), {}); };
+  const auto scene = [&] { return with_few_triangles(parse_scene(text, folder.file("scene.json"))); };
   Session session;
   put(100);
   session.edit(scene());

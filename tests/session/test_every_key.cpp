@@ -398,14 +398,6 @@ Image picture(int width, int height, float step) {
   return image;
 }
 
-Scene with_few_triangles(Scene scene) {
-  for (Shape& shape : scene.shapes) {
-    if (auto* sphere = std::get_if<SphereShape>(&shape.source)) sphere->fineness = kLeastFineness;
-    if (auto* torus = std::get_if<TorusShape>(&shape.source)) torus->fineness = kLeastFineness;
-  }
-  return scene;
-}
-
 // Claim: whatever key of a scene changes, the session's next picture is that of a new session, and another than before.
 // Source: Session. Fails if: a kept result's key lacks a value that it was computed from. A new key is to be added here.
 class EveryKey : public ::testing::TestWithParam<const char*> {};
