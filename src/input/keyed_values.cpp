@@ -130,22 +130,20 @@ class KeyedValue {
   bool spline_ = false;
 };
 
-void resolve(const Document& document, Node& node) {
+/// in    time: after the frame, in frames; values without interpolation then stay as in the frame
+void resolve(const Document& document, Node& node, double time = 0) {
   if (node.kind == Node::Kind::object && find_member(node, "keyed") != nullptr) {
-    Node value = KeyedValue(document, node).at(document.frame);
+    const KeyedValue keyed(document, node);
+    Node value;
+    try {
+      value = keyed.at(document.frame + time);
+    } catch (const Error&) {
+      if (time == 0) throw;
+      value = keyed.at(document.frame);
+    }
     node = std::move(value);
   }
-  for (Node& child : node.children) resolve(document, child);
-}
-
-void resolve_at_shutter(const Document& document, Node& node, double time) {
-  if (node.kind == Node::Kind::object && find_member(node, "keyed") != nullptr) try {
-      Node value = KeyedValue(document, node).at(document.frame + time);
-      node = std::move(value);
-    } catch (const Error&) {
-      return resolve(document, node);
-    }
-  for (Node& child : node.children) resolve_at_shutter(document, child, time);
+  for (Node& child : node.children) resolve(document, child, time);
 }
 
 bool changes(const Node& node) {
@@ -181,7 +179,7 @@ std::size_t count_camera_frames(const Document& document) {
 
 void resolve_at_shutter(Document& document, double time) {
   for (Node& part : document.root.children)
-    if (part.key == "camera" || part.key == "shapes") resolve_at_shutter(document, part, time);
+    if (part.key == "camera" || part.key == "shapes") resolve(document, part, time);
   resolve_keyed_values(document);
 }
 

@@ -23,6 +23,7 @@
 #include "input/readers.h"
 #include "input/spectral_values.h"
 #include "lights/environment_picture.h"
+#include "scene/same_place.h"
 #include "scene/scene_properties.h"
 #include "scene/unread_format.h"
 #include "spectra/wavelengths.h"
@@ -334,10 +335,6 @@ std::string unfitted(const AssetDefaults& defaults, std::span<const std::string>
       defaults.lights ? "s" : "");
 }
 
-}  // namespace
-
-namespace {
-
 /// Opening and closing of the shutter; empty: the camera and the shapes stay as in the scene.
 std::vector<ShutterEnd> shutter_ends(const Document& at_frame, const Scene& scene) {
   if (scene.film.shutter == 0) return {};
@@ -347,11 +344,7 @@ std::vector<ShutterEnd> shutter_ends(const Document& at_frame, const Scene& scen
     Document document = merged_document(at_frame.text, at_frame.file, at_frame.overrides, at_frame.frame);
     resolve_at_shutter(document, time);
     Scene end = read_at_wavelengths(document);
-    const bool is_still = end.camera == scene.camera &&
-                          std::ranges::equal(end.shapes, scene.shapes, [](const Shape& a, const Shape& b) {
-                            return a.source == b.source && a.to_world == b.to_world;
-                          });
-    moves |= !is_still;
+    moves |= end.camera != scene.camera || !std::ranges::equal(end.shapes, scene.shapes, in_same_place);
     ends.push_back({std::move(end.camera), std::move(end.shapes)});
   }
   return moves ? ends : std::vector<ShutterEnd>{};

@@ -247,22 +247,13 @@ void drop_replaced_surface(const Document& document, Node& shape) {
   const int medium = index_of("medium"), reflectance = index_of("reflectance");
   if (medium == reflectance) return;
   const int winner = std::max(medium, reflectance);
-  const auto drop = [&](std::span<const std::string_view> keys) {
-    std::erase_if(shape.children, [&](const Node& c) {
-      const bool is_earlier = c.override_index < 0 ||
-                              (c.override_index < winner && named_by(c.override_index) != named_by(winner));
-      return is_earlier && std::ranges::find(keys, c.key) != keys.end();
-    });
-  };
-  constexpr std::array<std::string_view, 11> kOpaque{
-      "reflectance",     "metalness",           "specular_roughness", "specular_ior",
-      "specular_weight", "specular_anisotropy", "specular_rotation",  "fuzz_weight",
-      "fuzz_color",      "fuzz_roughness",      "shadow_catcher"};
-  constexpr std::array<std::string_view, 2> kTranslucent{"medium", "group"};
-  if (winner == medium)
-    drop(kOpaque);
-  else
-    drop(kTranslucent);
+  const std::span<const std::string_view> replaced =
+      replaced_surface_keys(winner == medium ? "medium" : "reflectance");
+  std::erase_if(shape.children, [&](const Node& c) {
+    const bool is_earlier =
+        c.override_index < 0 || (c.override_index < winner && named_by(c.override_index) != named_by(winner));
+    return is_earlier && std::ranges::find(replaced, c.key) != replaced.end();
+  });
 }
 
 /// Keeps the later one of two keys for a property of the camera.
@@ -278,6 +269,17 @@ void drop_replaced_lens(Node& camera) {
 }
 
 }  // namespace
+
+std::span<const std::string_view> replaced_surface_keys(std::string_view key) {
+  static constexpr std::array<std::string_view, 11> kOpaque{
+      "reflectance",     "metalness",           "specular_roughness", "specular_ior",
+      "specular_weight", "specular_anisotropy", "specular_rotation",  "fuzz_weight",
+      "fuzz_color",      "fuzz_roughness",      "shadow_catcher"};
+  static constexpr std::array<std::string_view, 2> kTranslucent{"medium", "group"};
+  if (key == "medium") return kOpaque;
+  if (key == "reflectance") return kTranslucent;
+  return {};
+}
 
 void apply_overrides(Document& document) {
   const std::set<std::string> names = media_names(document.root);

@@ -2,6 +2,9 @@
 // Command-line values, applied to the tree before validation.
 #pragma once
 
+#include <span>
+#include <string_view>
+
 #include "values/json_tree.h"
 
 namespace opaline {
@@ -11,5 +14,8 @@ namespace opaline {
 /// error Error{bad_input} naming the override: no '=', a path through a single value, no such list element, a
 ///       probably misspelt medium
 void apply_overrides(Document& document);
+
+/// Keys of a shape replaced by its "medium" or "reflectance"; none for other keys.
+std::span<const std::string_view> replaced_surface_keys(std::string_view key);
 
 }  // namespace opaline

@@ -26,6 +26,7 @@
 #include "plan/seen_pixels.h"
 #include "render/render.h"
 #include "scene/names.h"
+#include "scene/same_place.h"
 #include "scene/scene_properties.h"
 #include "subsurface/method.h"
 #include "subsurface/plan_samples.h"
@@ -260,8 +261,7 @@ std::size_t bytes_of_motion(const Scene& scene, const World& world) {
   for (std::size_t i = 0; i < world.meshes.size() && !scene.shutter.empty(); ++i) {
     bytes += world.meshes[i].positions.size() * 150 + world.meshes[i].triangles.size() * 300;
     for (const ShutterEnd& end : scene.shutter)
-      moves = moves || end.shapes[i].source != scene.shapes[i].source ||
-              end.shapes[i].to_world != scene.shapes[i].to_world;
+      moves = moves || !in_same_place(end.shapes[i], scene.shapes[i]);
   }
   return moves ? bytes : 0;
 }

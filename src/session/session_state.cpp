@@ -11,6 +11,7 @@
 #include "plan/choose_models.h"
 #include "plan/make_plan.h"
 #include "plan/other_wavelengths.h"
+#include "scene/same_place.h"
 #include "scene/scene_properties.h"
 #include "session/first_light.h"
 #include "session/spectral_image.h"
@@ -384,10 +385,7 @@ std::vector<MeshMotion> Session::State::mesh_motions() const {
   for (std::size_t i = 0; i < motions.size() && !scene_.shutter.empty(); ++i) {
     const Shape &first = scene_.shutter[0].shapes[i], &last = scene_.shutter[1].shapes[i],
                 &now = scene_.shapes[i];
-    const auto is_there = [&](const Shape& end) {
-      return end.source == now.source && end.to_world == now.to_world;
-    };
-    if (is_there(first) && is_there(last)) continue;
+    if (in_same_place(first, now) && in_same_place(last, now)) continue;
     motions[i] = {moved_vertices(scene_, *world_, i, first), moved_vertices(scene_, *world_, i, last)};
   }
   if (std::ranges::all_of(motions, &MeshMotion::empty)) return {};

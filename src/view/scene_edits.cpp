@@ -9,6 +9,7 @@
 
 #include "core/log.h"
 #include "input/load_scene.h"
+#include "input/overrides.h"
 #include "input/schema.h"
 #include "opaline/error.h"
 
@@ -96,28 +97,19 @@ bool moves_camera(const std::string& path) {
   return path == "camera" || path.starts_with("camera.position") || path.starts_with("camera.look_at");
 }
 
+/// True if an override is of the path, or of a value inside it.
+bool is_within(const std::string& override, const std::string& path) {
+  return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
+}
+
 /// Removes edits of a shape's opaque surface, replaced by a medium, and vice versa.
 void drop_replaced_surface(std::vector<std::string>& edits, const std::string& path) {
   const std::size_t dot = path.rfind('.');
   if (!path.starts_with("shapes.") || dot == path.npos) return;
-  const std::string shape = path.substr(0, dot + 1), key = path.substr(dot + 1);
-  if (key == "medium")
+  for (const std::string_view key : replaced_surface_keys(path.substr(dot + 1)))
     std::erase_if(edits, [&](const std::string& edit) {
-      return edit.starts_with(shape) && (edit.compare(shape.size(), 11, "reflectance") == 0 ||
-                                         edit.compare(shape.size(), 9, "metalness") == 0 ||
-                                         edit.compare(shape.size(), 9, "specular_") == 0 ||
-                                         edit.compare(shape.size(), 5, "fuzz_") == 0 ||
-                                         edit.compare(shape.size(), 14, "shadow_catcher") == 0);
+      return is_within(edit, path.substr(0, dot + 1) + std::string(key));
     });
-  if (key == "reflectance")
-    std::erase_if(edits, [&](const std::string& edit) {
-      return edit.starts_with(shape + "medium=") || edit.starts_with(shape + "group=");
-    });
-}
-
-/// True if an override is of the path, or of a value inside it.
-bool is_within(const std::string& override, const std::string& path) {
-  return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
 }
 
 }  // namespace

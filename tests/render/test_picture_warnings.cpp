@@ -33,6 +33,22 @@ void expect_warning(const Scene& scene, const std::vector<std::string>& parts) {
     EXPECT_NE(warnings[0].find(part), std::string::npos) << "no \"" << part << "\" in: " << warnings[0];
 }
 
+// Claim: the opacity of caught shadows is no brightness, and hidden shapes are meant to be unseen. Fails if: a bright backdrop
+// behind a faint shadow is called overexposed, or a hidden ball gone astray.
+TEST(PictureWarnings, CatchersAndHiddenShapesHaveNone) {
+  Scene scene = ball_in_light();
+  Shape& floor = scene.shapes.emplace_back();
+  floor.name = "floor";
+  floor.source = QuadShape{{-50, -10, 50}, {100, 0, 0}, {0, 0, -100}};
+  floor.catches_shadows = true;
+  scene.lights.push_back({"panel", QuadLight{{-40, 60, -20}, {80, 0, 0}, {0, 0, 40}, Rgb(1)}});
+  scene.backdrop = Rgb(.9);
+  EXPECT_TRUE(warnings_of(scene).empty());
+  Scene hidden = ball_in_light();
+  hidden.shapes[0].is_seen = false;
+  EXPECT_TRUE(warnings_of(hidden).empty());
+}
+
 // Claim: the scenes of the repository, and a ball lit well, call for no words about their pictures. Source:
 // picture_warnings.h. Fails if: a threshold is drawn too near to what usual pictures have.
 TEST(PictureWarnings, GoodScenesHaveNone) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the camera sees: the backdrop, shapes that are hidden from it, and shadow catchers.
+// Visibility to the camera: backdrop, hidden shapes, shadow catchers.
 #include <gtest/gtest.h>
 
 #include "opaline/error.h"

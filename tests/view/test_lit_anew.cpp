@@ -72,7 +72,8 @@ TEST(LitAnew, IsWhatIsRendered) {
   }
 }
 
-// Claim: it is not known where lights differ by different factors or in more than what they emit, or anything else does.
+// Claim: it is not known where lights differ by different factors or in more than what they emit, or anything else does; nor
+// beside a backdrop, which is no light, or a shadow catcher, whose alpha depends on all lights.
 TEST(LitAnew, IsOfLightAlone) {
   const ViewFolder folder;
   const Scene scene = load_scene(folder.scene);
@@ -81,6 +82,10 @@ TEST(LitAnew, IsOfLightAlone) {
        {"lights.key.intensity=1e4", "lights.key.position=[1, 90, 0]", "media.stone.eta=1.4",
         "settings.seed=3", "camera.position=[0, 30, 110]", "film.samples_per_pixel=2"})
     EXPECT_FALSE(lit_anew(picture, scene, load_scene(folder.scene, std::vector<std::string>{edit}))) << edit;
+  for (Scene beside :
+       {load_scene(folder.scene, std::vector<std::string>{"backdrop=0.5"}),
+        load_scene(folder.scene, std::vector<std::string>{"shapes.floor.shadow_catcher=true"})})
+    EXPECT_FALSE(lit_anew(picture, beside, in_light(beside, Rgb(2))));
   const Scene dark = in_light(scene, {});
   EXPECT_FALSE(lit_anew(picture, dark, scene));
   EXPECT_TRUE(lit_anew(picture, scene, dark));

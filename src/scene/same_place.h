@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Motion of a shape.
+#pragma once
+
+#include "opaline/scene.h"
+
+namespace opaline {
+
+/// True if both shapes have the same vertices.
+inline bool in_same_place(const Shape& a, const Shape& b) {
+  return a.source == b.source && a.to_world == b.to_world;
+}
+
+}  // namespace opaline
