@@ -9,7 +9,6 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <system_error>
@@ -23,6 +22,7 @@
 #include "cli/option_values.h"
 #include "cli/quality.h"
 #include "core/lower_case.h"
+#include "input/overrides.h"
 #include "input/schema.h"
 #include "opaline/error.h"
 #include "scene/unread_format.h"
@@ -31,16 +31,6 @@
 
 namespace opaline {
 namespace {
-
-/// An environment map replacing all lights, with its values unchanged.
-std::vector<std::string> environment_overrides(const std::string& picture) {
-  const nlohmann::json light{{"type", "environment"},
-                             {"name", "environment"},
-                             {"file", std::filesystem::absolute(picture).string()}};
-  const auto replace = nlohmann::json::error_handler_t::replace;
-  return {"lights=" + nlohmann::json::array({light}).dump(-1, ' ', false, replace), "surroundings=0",
-          "film.exposure=0"};
-}
 
 std::vector<std::string> overrides_of(const Options& options, const std::string& scene) {
   std::vector<std::string> overrides;
@@ -402,6 +392,7 @@ Command command_of(const std::string& name, Parsed parsed) {
   const auto with_overrides = [&](auto arguments) {
     arguments.overrides = overrides_of(options, arguments.scene);
     if (options.size) {
+      if (arguments.scene.empty()) throw usage_error("--size needs a scene", "SCENE");
       if (std::ranges::any_of(options.sets,
                               [](const std::string& text) { return text.starts_with("mm_per_unit="); }))
         throw usage_error("--size sets mm_per_unit, which is given, too", "one of the two");

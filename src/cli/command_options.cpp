@@ -186,6 +186,8 @@ void add_turntable_options(CLI::App& app, RenderArguments& render, Options& opti
 
 void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {
   add_common_options(app, view.scene, options);
+  app.get_option("SCENE")->required(false)->description(
+      "scene file or asset (default: files dropped onto the page)");
   app.add_option("--listen", view.options.address,
                  "IP address to listen on (default 127.0.0.1: this machine only; 0.0.0.0: all networks)")
       ->type_name("ADDRESS");

@@ -15,6 +15,7 @@
 #include "benchmark/child_process.h"
 #include "cli/commands.h"
 #include "cli/metadata.h"
+#include "core/atomic_file.h"
 #include "opaline/error.h"
 #include "view/view_server.h"
 
@@ -22,9 +23,10 @@ namespace opaline {
 namespace {
 
 /// Renders a file in a process of its own, with the same bytes as `opaline render`, while the view continues.
-void render_file(const ViewArguments& arguments, const std::vector<std::string>& overrides,
-                 std::optional<int> frame, const std::string& path, Monitor& monitor) {
-  std::vector<std::string> words{"render", arguments.scene, "-o", path, "--log", "json"};
+void render_file(const ViewArguments& arguments, const std::string& scene,
+                 const std::vector<std::string>& overrides, std::optional<int> frame, const std::string& path,
+                 Monitor& monitor) {
+  std::vector<std::string> words{"render", scene, "-o", path, "--log", "json"};
   for (const std::string& text : overrides) words.insert(words.end(), {"--set", text});
   if (frame) words.insert(words.end(), {"--frames", std::to_string(*frame)});
   if (arguments.threads > 0) words.insert(words.end(), {"--threads", std::to_string(arguments.threads)});
@@ -52,6 +54,27 @@ void open_on_desktop(std::string url) {
   ::posix_spawn_file_actions_destroy(&silent);
 }
 
+constexpr const char* kFolder = "opaline-view";
+constexpr const char* kExample = R"({
+  "media": {"marble": {"preset": "marble"}},
+  "shapes": [{"name": "ball", "sphere": {"radius": 15}, "medium": "marble"}],
+  "lights": [
+    {"name": "key", "type": "sphere", "center": [-40, 50, 40], "radius": 8, "radiance": 25},
+    {"name": "rim", "type": "sphere", "center": [40, 20, -50], "radius": 8, "radiance": 40}
+  ],
+  "camera": {"position": [0, 12, 78], "look_at": [0, 0, 0], "field_of_view": 30}
+}
+)";
+
+/// Scene to start from without one.
+std::string example_scene() {
+  const std::filesystem::path path = std::filesystem::path(kFolder) / "ball.json";
+  std::error_code unwritable;  // reported by write_file
+  std::filesystem::create_directories(kFolder, unwritable);
+  if (!std::filesystem::exists(path)) write_file(path.string(), kExample);
+  return path.string();
+}
+
 }  // namespace
 
 void view_command(const ViewArguments& arguments) {
@@ -59,22 +82,25 @@ void view_command(const ViewArguments& arguments) {
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(arguments.threads));
+  const std::string scene = arguments.scene.empty() ? example_scene() : arguments.scene;
+  ViewOptions options = arguments.options;
+  options.folder = kFolder;
   RenderArguments render;
   render.program = arguments.program;
-  render.scene = arguments.scene;
-  render.outputs = {std::filesystem::path(arguments.scene).stem().string() + ".png"};
   const ViewHooks hooks{
       [&](const std::string& text) {
         if (!arguments.log.quiet) print_warning(arguments.log, "refused " + text);
       },
-      [&](const std::vector<std::string>& overrides, std::optional<int> frame) {
+      [&](const std::string& file, const std::vector<std::string>& overrides, std::optional<int> frame) {
+        render.scene = file;
+        render.outputs = {std::filesystem::path(file).stem().string() + ".png"};
         render.overrides = overrides;
         return command_again(render) + (frame ? " --frames " + std::to_string(*frame) : "");
       },
-      [&](const std::vector<std::string>& overrides, std::optional<int> frame, const std::string& path,
-          Monitor& stopped) { render_file(arguments, overrides, frame, path, stopped); }};
-  ViewServer server(SceneEdits(arguments.scene, arguments.overrides, arguments.frames), arguments.options,
-                    hooks);
+      [&](const std::string& file, const std::vector<std::string>& overrides, std::optional<int> frame,
+          const std::string& path,
+          Monitor& stopped) { render_file(arguments, file, overrides, frame, path, stopped); }};
+  ViewServer server(SceneEdits(scene, arguments.overrides, arguments.frames), options, hooks);
   server.stop_at_signals();
   print_event(arguments.log, "view", {{"url", server.url()}});
   if (arguments.log.format == LogFormat::text) write_line(stdout, "view        " + server.url());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
@@ -269,6 +270,15 @@ void drop_replaced_lens(Node& camera) {
 }
 
 }  // namespace
+
+std::vector<std::string> environment_overrides(const std::string& picture) {
+  const nlohmann::json light{{"type", "environment"},
+                             {"name", "environment"},
+                             {"file", std::filesystem::absolute(picture).string()}};
+  const auto replace = nlohmann::json::error_handler_t::replace;
+  return {"lights=" + nlohmann::json::array({light}).dump(-1, ' ', false, replace), "surroundings=0",
+          "film.exposure=0"};
+}
 
 std::span<const std::string_view> replaced_surface_keys(std::string_view key) {
   static constexpr std::array<std::string_view, 11> kOpaque{

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One request: a file of the page, or the start of its WebSocket.
+// One request: a file of the page, the start of its WebSocket, or a file uploaded by it.
 #pragma once
 
+#include <boost/beast/http/file_body.hpp>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "view/page_connection.h"
 
@@ -24,7 +27,7 @@ struct Refusal {
 };
 
 /// Path of the request after the token.
-/// refusal: its reason; a WebSocket needs the page's own Origin
+/// refusal: its reason; a WebSocket and an upload need the page's own Origin
 std::string allowed_path(const HttpRequest& request, const AccessRules& rules,
                          std::optional<Refusal>& refusal);
 
@@ -34,6 +37,9 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     std::function<void(boost::beast::tcp_stream&& stream, const HttpRequest& request,
                        std::shared_ptr<void> slot)>
         web_socket;
+    /// Returns the file to write an upload to.
+    /// error Error
+    std::function<std::string(std::string_view address, std::uint64_t bytes)> upload;
     std::function<void(const std::string& why)> refused;
   };
 
@@ -44,6 +50,9 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
  private:
   void answer();
+  void begin_upload(const std::string& address);
+  void receive_upload();
+  void refuse(const Refusal& refusal);
   void respond(boost::beast::http::status status, const std::string& type, std::string body);
 
   boost::beast::tcp_stream stream_;
@@ -52,6 +61,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   std::shared_ptr<void> slot_;
   boost::beast::flat_buffer in_;
   boost::beast::http::request_parser<boost::beast::http::empty_body> parser_;
+  std::optional<boost::beast::http::request_parser<boost::beast::http::file_body>> upload_;
   boost::beast::http::response<boost::beast::http::string_body> response_;
 };
 

@@ -39,6 +39,14 @@ class MessageReader {
     if (!node.whole) fail(node, "is not a whole number", "a whole number");
     return *node.whole;
   }
+  std::vector<std::string> texts(std::string_view key, const std::string& expected) const {
+    std::vector<std::string> texts;
+    for (const Node& child : need(key, Node::Kind::array, "a list of strings").children) {
+      if (child.kind != Node::Kind::string) fail(child, "is not a string", expected);
+      texts.push_back(child.text);
+    }
+    return texts;
+  }
   bool flag(std::string_view key) const { return need(key, Node::Kind::boolean, "true or false").boolean; }
   void check_keys(std::span<const std::string_view> keys) const {
     for (const Node& child : document_.root.children)
@@ -56,15 +64,6 @@ SetValues read_values(const MessageReader& reader) {
     if (child.key.empty() || child.key.find('=') != std::string::npos)
       reader.fail(child, "is not a path", "a path such as media.marble.specular_ior");
     message.values.push_back({child.key, to_json(child)});
-  }
-  return message;
-}
-
-Restore read_edits(const MessageReader& reader) {
-  Restore message;
-  for (const Node& child : reader.need("edits", Node::Kind::array, "[\"path=value\"]").children) {
-    if (child.kind != Node::Kind::string) reader.fail(child, "is not a string", "path=value");
-    message.edits.push_back(child.text);
   }
   return message;
 }
@@ -104,7 +103,14 @@ const std::vector<Kind>& kinds() {
       {"undo", {"do"}, [](Reader) -> PageMessage { return Undo{}; }},
       {"redo", {"do"}, [](Reader) -> PageMessage { return Redo{}; }},
       {"reset", {"do"}, [](Reader) -> PageMessage { return Reset{}; }},
-      {"restore", {"do", "edits"}, [](Reader r) -> PageMessage { return read_edits(r); }},
+      {"restore",
+       {"do", "edits"},
+       [](Reader r) -> PageMessage { return Restore{r.texts("edits", "path=value")}; }},
+      {"open",
+       {"do", "drop", "names"},
+       [](Reader r) -> PageMessage {
+         return OpenFiles{r.text("drop"), r.texts("names", "a file name")};
+       }},
       {"save", {"do", "name"}, [](Reader r) -> PageMessage { return SaveScene{r.text("name")}; }},
       {"render", {"do", "name"}, [](Reader r) -> PageMessage { return RenderFile{r.text("name")}; }},
       {"layer", {"do", "name"}, [](Reader r) -> PageMessage { return ChooseLayer{r.text("name")}; }},

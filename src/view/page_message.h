@@ -27,6 +27,11 @@ struct Reset {};
 struct Restore {
   std::vector<std::string> edits;
 };
+/// Opens uploaded files (dropped_files.h).
+struct OpenFiles {
+  std::string drop;
+  std::vector<std::string> names;
+};
 struct SaveScene {
   std::string name;
 };
@@ -64,12 +69,12 @@ struct LookBack {};
 struct KeepLook {};
 
 using PageMessage =
-    std::variant<SetValues, Undo, Redo, Reset, Restore, SaveScene, RenderFile, ChooseLayer, WorkBehind,
-                 ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook>;
+    std::variant<SetValues, Undo, Redo, Reset, Restore, OpenFiles, SaveScene, RenderFile, ChooseLayer,
+                 WorkBehind, ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook>;
 
 /// in    text: {"do": "set", "values": {"media.marble.specular_ior": 1.4}, "stroke": 7}, {"do": "undo"},
 ///       {"do": "redo"}, {"do": "reset"}, {"do": "restore", "edits": ["media.marble.specular_ior=1.4"]},
-///       {"do": "save", "name": "a.json"}, {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
+///       {"do": "open", "drop": "7", "names": ["a.obj", "a.mtl"]}, {"do": "save", "name": "a.json"}, {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
 ///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01}, {"do":
 ///       "frame", "frame": 7}, {"do": "shown", "frame": 3}, {"do": "look", "position": [0, 0, 5], "look_at":
 ///       [0, 0, 0]}, {"do": "look_back"} or {"do": "keep_look"}

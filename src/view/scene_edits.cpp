@@ -56,18 +56,6 @@ void check_pixels(const Scene& scene) {
         std::to_string(pixels));
 }
 
-/// Rejects edits opening files: by their key, or by an object with one, in any spelling.
-void check_opens_nothing(const std::string& file, const std::string& edit) {
-  const std::size_t end = edit.find('=');
-  const std::string path = '.' + edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
-  const bool opens = std::ranges::any_of(file_keys(), [&](std::string_view key) {
-    return path.ends_with('.' + std::string(key)) ||
-           value.find('"' + std::string(key) + '"') != std::string::npos;
-  });
-  if (opens || value.find('\\') != std::string::npos)
-    throw bad_file(file, "the view cannot change files", "the files of the opened scene");
-}
-
 bool is_keyed(const Json& value) {
   return value.is_object() && value.contains("keyed");
 }
@@ -134,8 +122,21 @@ SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given, 
   revision_ = 1;
 }
 
+/// Rejects edits opening files: by their key, or by an object with one, in any spelling.
+void SceneEdits::check_opens_nothing(const std::string& edit) const {
+  if (std::ranges::find(lit_by_, edit) != lit_by_.end()) return;
+  const std::size_t end = edit.find('=');
+  const std::string path = '.' + edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
+  const bool opens = std::ranges::any_of(file_keys(), [&](std::string_view key) {
+    return path.ends_with('.' + std::string(key)) ||
+           value.find('"' + std::string(key) + '"') != std::string::npos;
+  });
+  if (opens || value.find('\\') != std::string::npos)
+    throw bad_file(file_, "the view cannot change files", "the files of the opened scene");
+}
+
 Scene SceneEdits::parsed(const Edits& edits, const Look& look) const {
-  for (const std::string& edit : edits) check_opens_nothing(file_, edit);
+  for (const std::string& edit : edits) check_opens_nothing(edit);
   Scene scene = read(edits, look, frame_);
   if (mesh_files(scene) != mesh_files(scene_))
     throw bad_file(file_, "the view cannot change mesh files", "the files of the opened scene");
@@ -221,6 +222,26 @@ void SceneEdits::restore(const std::vector<std::string>& edits) {
   ++at_;
   scene_ = std::move(scene);
   ++revision_;
+}
+
+void SceneEdits::open(const std::string& file) {
+  Edits kept = given_;
+  std::erase_if(kept, [](const std::string& edit) {
+    return !edit.starts_with("film.") && !edit.starts_with("settings.");
+  });
+  SceneEdits opened(file, std::move(kept));
+  opened.revision_ = revision_ + 1;
+  *this = std::move(opened);
+}
+
+void SceneEdits::light_by(const std::string& picture) {
+  SetValues change;
+  for (const std::string& edit : environment_overrides(picture)) {
+    const std::size_t end = edit.find('=');
+    change.values.push_back({edit.substr(0, end), edit.substr(end + 1)});
+    lit_by_.push_back(edit);
+  }
+  set(change);
 }
 
 void SceneEdits::go_to_frame(int frame) {

@@ -35,6 +35,12 @@ class SceneEdits {
   /// No effect after an edit of the scene.
   void restore(const std::vector<std::string>& edits);
 
+  /// Opens another file without edits; command-line overrides of film and settings stay.
+  /// error as the constructor
+  void open(const std::string& file);
+  /// An environment map replacing all lights: an edit.
+  void light_by(const std::string& picture);
+
   /// Shows another frame; not a step of undo.
   /// error as parse_scene; Error{bad_input}: none of frames()
   void go_to_frame(int frame);
@@ -77,12 +83,14 @@ class SceneEdits {
   Scene parsed(const Edits& edits, const Look& look) const;
   Scene read(const Edits& edits, const Look& look, int frame) const;
   Edits all_overrides(const Edits& edits) const;
+  void check_opens_nothing(const std::string& edit) const;
   Assignment with_key(const Assignment& change) const;
   void go_to(std::size_t place);
 
   std::string file_, text_;
   Edits placed_;  // placement of an asset's default camera and lights
   Edits given_;
+  Edits lit_by_;  // edits of light_by: may name their files
   std::vector<Edits> history_{Edits{}};
   std::size_t at_ = 0;
   std::uint64_t stroke_ = 0;  // stroke of the last step; 0: closed

@@ -24,6 +24,7 @@
 #include "scene/names.h"
 #include "values/frame_name.h"
 #include "values/json_tree.h"
+#include "view/dropped_files.h"
 #include "view/http_connection.h"
 #include "view/view_address.h"
 #include "view/view_background.h"
@@ -37,7 +38,6 @@ namespace asio = boost::asio;
 using boost::beast::error_code;
 
 constexpr std::chrono::milliseconds kTick{100};
-constexpr std::size_t kLongestName = 200;
 
 /// Closes the server's sockets in child processes rendering a file.
 void close_in_children(int socket) {
@@ -48,9 +48,7 @@ void close_in_children(int socket) {
 std::string path_beside(const std::string& scene, const std::string& name,
                         const std::vector<std::string>& extensions, const std::set<std::string>& written) {
   const std::filesystem::path file(name);
-  const bool is_plain = file.filename() == file && !name.starts_with('.') && name.size() <= kLongestName &&
-                        std::ranges::none_of(name, [](char c) { return (unsigned char)(c) < ' '; });
-  if (!is_plain || std::ranges::find(extensions, file.extension().string()) == extensions.end())
+  if (!is_plain_name(name) || std::ranges::find(extensions, file.extension().string()) == extensions.end())
     throw bad_file("", "invalid file name",
                    fmt::format("a name without a folder that ends in {}", fmt::join(extensions, " or ")),
                    "'" + printable(name) + "'");
@@ -74,6 +72,7 @@ struct ViewServer::State {
   void act(PageConnection& page, const PageMessage& message);
   void after_edit();
   std::string by_scene_camera() const;
+  void open(PageConnection& page, const OpenFiles& dropped);
   void save(PageConnection& page, const std::string& name);
   void render_file(PageConnection& page, const std::string& name);
   PackedFrame pack(const std::shared_ptr<const ViewPicture>& picture, const std::string& layer);
@@ -86,6 +85,7 @@ struct ViewServer::State {
 
   asio::io_context io;
   SceneEdits edits;
+  DroppedFiles dropped;
   ViewHooks hooks;
   AccessRules rules;
   asio::ip::tcp::acceptor acceptor;
@@ -110,7 +110,12 @@ struct ViewServer::State {
 };
 
 ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks)
-    : edits(std::move(scene_edits)), hooks(std::move(view_hooks)), acceptor(io), timer(io), signals(io) {
+    : edits(std::move(scene_edits)),
+      dropped(options.folder),
+      hooks(std::move(view_hooks)),
+      acceptor(io),
+      timer(io),
+      signals(io) {
   rules.token = options.token.empty() ? random_token() : options.token;
   check_token(rules.token);
   const Address wanted = address_of(options);
@@ -156,6 +161,7 @@ void ViewServer::State::accept() {
         [this](boost::beast::tcp_stream&& stream, const HttpRequest& request, std::shared_ptr<void> taken) {
           open_page(std::move(stream), request, std::move(taken));
         },
+        [this](std::string_view address, std::uint64_t bytes) { return dropped.begin(address, bytes); },
         [this, from](const std::string& why) { hooks.refused(from + ": " + why); }};
     std::make_shared<HttpConnection>(std::move(socket), rules, events, slot)->start();
   });
@@ -224,6 +230,7 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
   if (std::holds_alternative<Redo>(message)) edits.redo();
   if (std::holds_alternative<Reset>(message)) edits.reset();
   if (const auto* restore = std::get_if<Restore>(&message)) edits.restore(restore->edits);
+  if (const auto* files = std::get_if<OpenFiles>(&message)) open(page, *files);
   if (const auto* save_as = std::get_if<SaveScene>(&message)) save(page, save_as->name);
   if (const auto* file = std::get_if<RenderFile>(&message)) render_file(page, file->name);
   if (const auto* layer = std::get_if<ChooseLayer>(&message)) {
@@ -278,8 +285,23 @@ void ViewServer::State::after_edit() {
   background->stop();
   reference.reset();
   renderer->show(edits.scene(), edits.revision(), edits.reference());
-  tell(PageText::scene, scene_text(edits, hooks.command(edits.overrides(), edits.frame())));
+  tell(PageText::scene, scene_text(edits, hooks.command(edits.file(), edits.overrides(), edits.frame())));
   if (!std::exchange(shows_progress, true)) show_progress();
+}
+
+/// An asset replaces the scene; an environment map alone replaces its lights.
+void ViewServer::State::open(PageConnection& page, const OpenFiles& files) {
+  const std::string path = dropped.take(files.drop, files.names);
+  try {
+    if (is_environment_name(path))
+      edits.light_by(path);
+    else
+      edits.open(path);
+  } catch (const std::exception&) {
+    dropped.discard(path);
+    throw;
+  }
+  page.answer(told_text(true, "opened " + path));
 }
 
 /// Note on written files differing from the view.
@@ -303,20 +325,21 @@ void ViewServer::State::render_file(PageConnection& page, const std::string& nam
       path_beside(edits.file(), frame ? with_frame(numbered, *frame) : name, {".exr", ".png"}, written);
   const std::string pattern = frame ? (std::filesystem::path(path).parent_path() / numbered).string() : path;
   if (renders_file) throw bad_file(path, "another file is being rendered", "one render at a time");
-  file_thread = std::jthread([this, path, pattern, frame, overrides = edits.overrides()] {
-    std::string failure;
-    try {
-      hooks.render_file(overrides, frame, pattern, file_monitor);
-    } catch (const std::exception& error) {
-      failure = error.what();
-    }
-    asio::post(io, [this, path, failure] {
-      renders_file = false;
-      if (failure.empty()) written.insert(path);
-      const std::string text = failure.empty() ? "rendered " + path : path + ": " + failure;
-      for (PageConnection* shown : pages) shown->answer(told_text(failure.empty(), text));
-    });
-  });
+  file_thread =
+      std::jthread([this, path, pattern, frame, scene = edits.file(), overrides = edits.overrides()] {
+        std::string failure;
+        try {
+          hooks.render_file(scene, overrides, frame, pattern, file_monitor);
+        } catch (const std::exception& error) {
+          failure = error.what();
+        }
+        asio::post(io, [this, path, failure] {
+          renders_file = false;
+          if (failure.empty()) written.insert(path);
+          const std::string text = failure.empty() ? "rendered " + path : path + ": " + failure;
+          for (PageConnection* shown : pages) shown->answer(told_text(failure.empty(), text));
+        });
+      });
   renders_file = true;
   page.answer(told_text(true, "rendering " + path + by_scene_camera()));
 }

@@ -19,18 +19,21 @@ struct ViewOptions {
   std::string address = "127.0.0.1";  ///< IP; an unspecified one listens on all
   std::uint16_t port = 0;             ///< 0: any free port
   std::string token;                  ///< empty: a random one
+  std::string folder;                 ///< for files dropped onto the page
 };
 
 /// Callbacks of the server.
 struct ViewHooks {
   /// Reports a refused request or page with the reason, one line. On the thread of `run`.
   std::function<void(const std::string& text)> refused;
-  /// Command rendering the scene with these overrides.
-  std::function<std::string(const std::vector<std::string>& overrides, std::optional<int> frame)> command;
-  /// Renders the scene to a file; on a separate thread. frame: the path then contains ## for its number
+  /// Command rendering a scene file or asset with these overrides.
+  std::function<std::string(const std::string& scene, const std::vector<std::string>& overrides,
+                            std::optional<int> frame)>
+      command;
+  /// Renders a scene to an image; on a separate thread. frame: the path then contains ## for its number
   /// error Error, with its text shown on the pages
-  std::function<void(const std::vector<std::string>& overrides, std::optional<int> frame,
-                     const std::string& path, Monitor& monitor)>
+  std::function<void(const std::string& scene, const std::vector<std::string>& overrides,
+                     std::optional<int> frame, const std::string& path, Monitor& monitor)>
       render_file;
 };
 

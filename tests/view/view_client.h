@@ -65,8 +65,9 @@ struct ViewFolder : ScratchFolder {
 /// Serves a scene on a thread, as `opaline view` does.
 class RunningView {
  public:
-  explicit RunningView(const std::string& scene, std::uint16_t port = 0, std::vector<int> frames = {})
-      : server_(SceneEdits(scene, {}, std::move(frames)), {"127.0.0.1", port, kToken}, hooks()),
+  explicit RunningView(const std::string& scene, std::uint16_t port = 0, std::vector<int> frames = {},
+                       const std::string& folder = "")
+      : server_(SceneEdits(scene, {}, std::move(frames)), {"127.0.0.1", port, kToken, folder}, hooks()),
         thread_([this] { server_.run(); }) {}
   ~RunningView() { server_.stop(); }
   RunningView(const RunningView&) = delete;
@@ -99,12 +100,11 @@ class RunningView {
               const std::lock_guard lock(mutex_);
               log_ += text + '\n';
             },
-            [](const std::vector<std::string>& overrides, std::optional<int>) {
+            [](const std::string&, const std::vector<std::string>& overrides, std::optional<int>) {
               return "render with " + std::to_string(overrides.size());
             },
-            [](const std::vector<std::string>&, std::optional<int>, const std::string& path, Monitor&) {
-              put_bytes(path, "a picture");
-            }};
+            [](const std::string&, const std::vector<std::string>&, std::optional<int>,
+               const std::string& path, Monitor&) { put_bytes(path, "a picture"); }};
   }
 
   std::mutex mutex_;

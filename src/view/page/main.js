@@ -3,6 +3,7 @@
 import {Ahead} from "./ahead.js";
 import {cameraOf, dolly, lookOf, orbit, pan, rounded, turnedLight} from "./camera.js";
 import {Connection, newStroke, pausedStroke} from "./connection.js";
+import {Drop} from "./drop.js";
 import {Knobs} from "./knobs.js";
 import {Overlay} from "./overlay.js";
 import {draw, parseFrame, valuesAt} from "./picture.js";
@@ -230,15 +231,18 @@ function takePoint(point) {
 // ------------------------------------------------------------------------------------------
 
 function takeScene(message) {
-  const isFirst = !state.scene;
+  const isNewFile = state.file !== message.file;
+  state.file = message.file;
+  if (isNewFile) ahead.clear();
   serverScene = {...message.scene, look: message.look};
   Object.assign(state, {revision: message.revision, edits: message.edits, command: message.command});
   takeValues();
   takeFilm();
   document.title = `${message.file} · opaline view`;
   one("file").textContent = message.file;
-  if (isFirst) {
-    one("name").value = message.file.replace(/(\.(json|glb|gltf|obj))?$/i, "-edited");
+  if (isNewFile) {
+    compare(null, "");
+    one("name").value = message.file.replace(/(\.(json|glb|gltf|obj|ply|stl|off))?$/i, "-edited");
     setExposure(message.scene.film?.exposure || 0);
     one("transform").value = display.transform = message.scene.film?.view || "soft";
   }
@@ -366,6 +370,12 @@ function setExposure(stops) {
   one("stops").textContent = stops;
 }
 
+const drop = new Drop(document.body, step, tell);
+one("open").onclick = () => one("files").click();
+one("files").onchange = () => {
+  drop.open([...one("files").files].map((file) => ({name: file.name, file})));
+  one("files").value = "";
+};
 for (const word of ["undo", "redo", "reset"]) one(word).onclick = () => step({do: word});
 one("keep-look").onclick = () => step({do: "keep_look"});
 one("look-back").onclick = () => step({do: "look_back"});
