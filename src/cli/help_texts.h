@@ -100,6 +100,10 @@ the same scene. The page loads nothing from other hosts. Each change shows a coa
 and then the final image, identical to that of opaline render. A new change cancels the current image. Ctrl-C ends the
 view.
 
+Drop an asset with its textures onto the page, or press "Open...", to view it: .glb, .gltf, .obj, .ply, .stl or .off. An
+environment map (.exr, .hdr) replaces the lights. Files dropped are stored in the folder opaline-view of the current
+folder, each drop in a folder of its own: at most 256 files and 2 GiB. Without a scene, the view starts with a ball.
+
 The view never writes to the scene file. "Save scene" writes another scene file in its folder, and "Render final" an
 image, under a name of your choice that does not exist yet. Both use the mesh files of the scene.
 
@@ -110,13 +114,14 @@ A scene with frames has a frame slider: the frames of --frames, or from the firs
 reuse the stages that they share. The final image is that of opaline render --frames. Changing a keyed value sets its
 key at the current frame.
 
-Anyone with the URL can edit the scene and write such files into its folder. The server refuses other requests and
+Anyone with the URL can edit the scene, upload files and write such files into its folder. The server refuses other requests and
 reports them on stderr: a wrong token, Origin or host name, messages above 64 kB, more than 16 pages or 64 connections.
 The connection is not encrypted: use --listen only on a trusted network, or use ssh -L 8080:127.0.0.1:8080 and
 --port 8080. On a slow connection, a page skips images; the next image is always the newest. A page that loses its
 server tries to reconnect. With --port and --token, a new server has the same URL and takes over the page's edits.
 
 Examples:
+  opaline view
   opaline view bunny.json
   opaline view bunny.json --set media.marble.specular_ior=1.4 --resolution 1024x1024
   opaline view turn.json --frames 1-24

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <memory>
 #include <numeric>
 #include <system_error>
 
@@ -113,7 +114,11 @@ std::string DroppedFiles::begin(std::string_view address, std::uint64_t bytes) {
 }
 
 std::string DroppedFiles::take(const std::string& drop, const std::vector<std::string>& names) {
-  if (drop.empty() || drop != drop_ || names.size() != bytes_.size())
+  const bool is_known = !drop.empty() && drop == drop_;
+  const std::shared_ptr<void> end(nullptr, [&](void*) {
+    if (is_known) forget();
+  });
+  if (!is_known || names.size() != bytes_.size())
     throw bad_file("", "the dropped files are incomplete", "uploads of all files of one drop");
   for (const std::string& name : names)
     if (!is_plain_path(name))
@@ -134,10 +139,8 @@ std::string DroppedFiles::take(const std::string& drop, const std::vector<std::s
     });
   } catch (const Error&) {
     discard(path);
-    forget();
     throw;
   }
-  forget();
   return path;
 }
 

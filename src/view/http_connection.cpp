@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "opaline/error.h"
@@ -64,7 +65,7 @@ HttpConnection::HttpConnection(boost::asio::ip::tcp::socket&& socket, const Acce
       slot_(std::move(slot)),
       in_(kBuffer) {
   parser_.header_limit(kLongestHeader);
-  parser_.body_limit(DroppedFiles::kMostBytes);
+  parser_.body_limit(std::numeric_limits<std::uint64_t>::max());  // checked by DroppedFiles::begin
 }
 
 void HttpConnection::start() {

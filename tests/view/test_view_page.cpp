@@ -153,6 +153,27 @@ TEST_F(LongViewPage, ShapesChangeTheirMaterial) {
   EXPECT_EQ(edits.back(), "shapes.left.medium=\"skin1\"");
 }
 
+// Claim: an asset and its material file dropped onto the page are shown as rendered, and become translucent there. Fails if
+// the names of the files are lost, or if the panel keeps the knobs of the scene before.
+TEST_F(LongViewPage, DroppedAssetsAreShown) {
+  final_edits();
+  browser.run(tab, R"((() => { const dropped = new DataTransfer();
+    const add = (name, text) => dropped.items.add(new File([text], name));
+    add("box.obj", "mtllib box.mtl\nv 0 0 0\nv 20 0 0\nv 0 20 0\nv 0 0 20\nusemtl red\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    add("box.mtl", "newmtl red\nKd 0.8 0.1 0.1\n");
+    document.body.dispatchEvent(new DragEvent("drop", {dataTransfer: dropped, bubbles: true, cancelable: true})); })())");
+  EXPECT_TRUE(browser.comes_true(tab, "document.getElementById('file').textContent === 'box.obj'"));
+  final_edits(revision + 1);
+  const std::string box = folder.file("dropped/box/box.obj");
+  expect_shown(rendered(box));
+  browser.run(tab, R"((() => { for (const d of document.querySelectorAll('details')) d.open = true;
+    const s = document.querySelector('[aria-label$=".medium"]'); s.value = 'marble'; s.onchange(); })())");
+  const std::vector<std::string> edits = final_edits(revision + 1);
+  ASSERT_EQ(edits.size(), 2u);
+  expect_shown(rendered(box, edits));
+  EXPECT_EQ(browser.run(tab, "document.getElementById('name').value"), "box-edited");
+}
+
 // Claim: a number that is refused is replaced by the accepted one at once, in its field, and the picture stays as it is.
 // Fails if: what the page has changed goes before what the server tells of after it was refused.
 TEST_F(LongViewPage, ARefusalRestores) {

@@ -44,6 +44,26 @@ TEST(ViewProgram, ServesUntilCtrlC) {
   EXPECT_EQ(folder.entries(), 3u);
 }
 
+// Claim: without a scene, the view shows a ball in a folder for dropped files, and renders it there. Fails if the hooks keep
+// the scene of the command line, which is none.
+TEST(ViewProgram, StartsWithoutAScene) {
+  const ScratchFolder folder;
+  const std::string port = std::to_string(free_port());
+  Child view({"view", "--port", port, "--token", kToken, "--resolution", "24x24"}, folder.path.string());
+  ASSERT_TRUE(view.prints("/" + std::string(kToken) + "/\n"));
+  ViewClient page = page_of(std::uint16_t(std::stoi(port)));
+  ASSERT_TRUE(page.read_final());
+  EXPECT_TRUE(contains(page.texts.at("scene").at("command"), "opaline-view/ball.json"));
+  page.send({{"do", "render"}, {"name", "ball.png"}});
+  EXPECT_TRUE(contains(page.read_answer(), "rendering"));
+  EXPECT_TRUE(contains(page.read_answer(), "rendered")) << page.texts["told"];
+  view.send(SIGINT);
+  EXPECT_EQ(view.wait(20).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("opaline-view/ball.png")));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("opaline-view/ball.json")));
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
 /// `opaline view` on a terminal of its own.
 class ViewOnTerminal {
  public:
@@ -155,7 +175,7 @@ TEST(ViewProgram, BadArguments) {
     std::string text;
   };
   for (const Row& row :
-       std::vector<Row>{{{"view"}, 2, "SCENE is required"},
+       std::vector<Row>{{{"view", "--size", "5cm"}, 2, "--size needs a scene"},
                         {{"view", folder.file("none.json")}, 2, "no such scene file"},
                         {{"view", folder.scene, "--listen", "nowhere"}, 2, "an IP address"},
                         {{"view", folder.scene, "--port", "65536"}, 2, "--port"},

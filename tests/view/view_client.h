@@ -11,6 +11,7 @@
 #include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -65,9 +66,11 @@ struct ViewFolder : ScratchFolder {
 /// Serves a scene on a thread, as `opaline view` does.
 class RunningView {
  public:
-  explicit RunningView(const std::string& scene, std::uint16_t port = 0, std::vector<int> frames = {},
-                       const std::string& folder = "")
-      : server_(SceneEdits(scene, {}, std::move(frames)), {"127.0.0.1", port, kToken, folder}, hooks()),
+  explicit RunningView(const std::string& scene, std::uint16_t port = 0, std::vector<int> frames = {})
+      : server_(
+            SceneEdits(scene, {}, std::move(frames)),
+            {"127.0.0.1", port, kToken, std::filesystem::path(scene).replace_filename("dropped").string()},
+            hooks()),
         thread_([this] { server_.run(); }) {}
   ~RunningView() { server_.stop(); }
   RunningView(const RunningView&) = delete;
