@@ -47,6 +47,7 @@ class MessageReader {
     }
     return texts;
   }
+  int index(std::string_view key) const { return int(std::min<std::uint64_t>(whole(key), 1 << 30)); }
   bool flag(std::string_view key) const { return need(key, Node::Kind::boolean, "true or false").boolean; }
   void check_keys(std::span<const std::string_view> keys) const {
     for (const Node& child : document_.root.children)
@@ -116,16 +117,17 @@ const std::vector<Kind>& kinds() {
       {"layer", {"do", "name"}, [](Reader r) -> PageMessage { return ChooseLayer{r.text("name")}; }},
       {"behind", {"do", "trade", "reference"}, [](Reader r) -> PageMessage { return read_work(r); }},
       {"choose", {"do", "error"}, [](Reader r) -> PageMessage { return read_choice(r); }},
-      {"frame",
-       {"do", "frame"},
-       [](Reader r) -> PageMessage {
-         return GoToFrame{int(std::min<std::uint64_t>(r.whole("frame"), 1 << 30))};
-       }},
+      {"frame", {"do", "frame"}, [](Reader r) -> PageMessage { return GoToFrame{r.index("frame")}; }},
       {"shown",
        {"do", "frame"},
        [](Reader r) -> PageMessage { return FrameShown{std::uint32_t(r.whole("frame"))}; }},
       {"look", {"do", "position", "look_at"}, [](Reader r) -> PageMessage { return read_look(r); }},
       {"look_back", {"do"}, [](Reader) -> PageMessage { return LookBack{}; }},
+      {"pick",
+       {"do", "x", "y"},
+       [](Reader r) -> PageMessage {
+         return Pick{r.index("x"), r.index("y")};
+       }},
       {"keep_look", {"do"}, [](Reader) -> PageMessage { return KeepLook{}; }},
   };
   return table;

@@ -103,7 +103,7 @@ void drop_replaced_surface(std::vector<std::string>& edits, const std::string& p
 }  // namespace
 
 SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given, std::vector<int> frames)
-    : file_(file), given_(std::move(given)), frames_(std::move(frames)) {
+    : file_(file), given_(std::move(given)), frames_(frames), given_frames_(std::move(frames)) {
   if (is_asset_name(file)) {
     ImportedAsset asset = import_asset(file, std::filesystem::path(file).filename().string());
     placed_ = placed_defaults(asset, file, given_);
@@ -232,6 +232,29 @@ void SceneEdits::open(const std::string& file) {
   SceneEdits opened(file, std::move(kept));
   opened.revision_ = revision_ + 1;
   *this = std::move(opened);
+}
+
+std::string SceneEdits::reload() {
+  SceneEdits opened(file_, given_, given_frames_);
+  std::string lost;
+  opened.lit_by_ = lit_by_;
+  try {
+    if (std::ranges::find(opened.frames_, frame_) != opened.frames_.end()) opened.go_to_frame(frame_);
+    opened.revision_ = 1;
+    opened.restore(edits());
+    if (look_) opened.look(*look_);
+  } catch (const Error& failure) {
+    lost = failure.what();
+  }
+  opened.revision_ = revision_ + 1;
+  *this = std::move(opened);
+  return lost;
+}
+
+std::vector<std::string> SceneEdits::files() const {
+  std::vector<std::string> files = mesh_files(scene_);
+  files.push_back(file_);
+  return files;
 }
 
 void SceneEdits::light_by(const std::string& picture) {

@@ -38,6 +38,11 @@ class SceneEdits {
   /// Opens another file without edits; command-line overrides of film and settings stay.
   /// error as the constructor
   void open(const std::string& file);
+  /// Reads the file again, as its change on the disk left it. Returns the reason if the edits no longer fit and are lost.
+  /// error as the constructor, without a change
+  std::string reload();
+  /// Files of the scene: itself and its meshes.
+  std::vector<std::string> files() const;
   /// An environment map replacing all lights: an edit.
   void light_by(const std::string& picture);
 
@@ -95,7 +100,7 @@ class SceneEdits {
   std::size_t at_ = 0;
   std::uint64_t stroke_ = 0;  // stroke of the last step; 0: closed
   std::uint32_t revision_ = 1;
-  std::vector<int> frames_;
+  std::vector<int> frames_, given_frames_;
   int frame_ = 1;
   Look look_;
   Scene scene_;

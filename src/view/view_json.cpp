@@ -171,6 +171,10 @@ std::string told_text(bool good, const std::string& text) {
   return compact({{"is", "told"}, {"good", good}, {"text", text}});
 }
 
+std::string picked_text(std::optional<std::size_t> shape) {
+  return compact({{"is", "picked"}, {"shape", shape ? Json(*shape) : Json()}});
+}
+
 std::string told_choice(double target, const TargetError& chosen) {
   if (!chosen.sees_translucent)
     return told_text(false, "no translucent object is visible, so a target error has no effect");

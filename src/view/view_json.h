@@ -41,6 +41,9 @@ std::string work_text(const Monitor& monitor);
 std::string failed_text(std::uint32_t revision, const std::string& why);
 std::string told_text(bool good, const std::string& text);
 
+/// "picked": the index of a shape, or null.
+std::string picked_text(std::optional<std::size_t> shape);
+
 /// "told": the settings chosen for an error.
 std::string told_choice(double target, const TargetError& chosen);
 

@@ -14,6 +14,7 @@
 #include "plan/picture_warnings.h"
 #include "plan/placement_warnings.h"
 #include "plan/shapes_inside.h"
+#include "render/camera_rays.h"
 #include "session/spectral_image.h"
 #include "subsurface/method.h"
 #include "view/lit_anew.h"
@@ -78,21 +79,47 @@ ViewRenderer::~ViewRenderer() {
   changed_.notify_one();
 }
 
-void ViewRenderer::show(Scene scene, std::uint32_t revision, std::optional<Scene> reference) {
+void ViewRenderer::show(Scene scene, std::uint32_t revision, std::optional<Scene> reference,
+                        bool has_new_files) {
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = Wanted{std::move(scene), std::move(reference), revision, Clock::now()};
+    has_new_files = has_new_files || (wanted_ && wanted_->has_new_files);
+    wanted_ = Wanted{std::move(scene), std::move(reference), revision, Clock::now(), has_new_files};
     monitor_.cancelled = true;
   }
   changed_.notify_one();
+}
+
+void ViewRenderer::pick(int x, int y) {
+  {
+    const std::lock_guard lock(mutex_);
+    picked_ = {x, y};
+  }
+  changed_.notify_one();
+}
+
+std::optional<std::size_t> ViewRenderer::shape_at(const std::array<int, 2>& pixel) const {
+  if (!prepared_) return {};
+  const CameraRays camera_rays(prepared_->camera, prepared_->film, session_->world());
+  std::vector<TracedRay> rays{{camera_rays.middle_ray(pixel[0], pixel[1]), {}}};
+  intersect_from_camera(session_->scene(), session_->rays(), rays);
+  const Hit& hit = rays.front().hit;
+  return hit.mesh == Hit::kMiss ? std::nullopt : std::optional<std::size_t>(hit.mesh);
 }
 
 std::optional<ViewRenderer::Wanted> ViewRenderer::next() {
   std::unique_lock lock(mutex_);
   monitor_.begin(nullptr, 0);
   is_drawing_ = false;
-  changed_.wait(lock, [&] { return stopped_ || wanted_; });
-  if (stopped_) return {};
+  for (;;) {
+    changed_.wait(lock, [&] { return stopped_ || wanted_ || picked_; });
+    if (stopped_) return {};
+    if (!picked_) break;
+    const std::array<int, 2> pixel = *std::exchange(picked_, {});
+    lock.unlock();
+    events_.picked(shape_at(pixel));
+    lock.lock();
+  }
   is_drawing_ = true;
   drawing_since_ = Clock::now();
   monitor_.cancelled = brief_.cancelled = false;
@@ -116,14 +143,19 @@ void ViewRenderer::run() {
     } catch (const Error& failure) {
       if (failure.kind != ErrorKind::interrupted) events_.failed(wanted->revision, failure.what());
     } catch (const std::exception& failure) {
-      session_ = new_session();
-      prepared_.reset();
-      anchor_.reset();
+      restart();
       events_.failed(wanted->revision, dynamic_cast<const std::bad_alloc*>(&failure) != nullptr
                                            ? "out of memory"
                                            : failure.what());
     }
   }
+}
+
+void ViewRenderer::restart() {
+  session_ = new_session();
+  prepared_.reset();
+  anchor_.reset();
+  final_.reset();
 }
 
 /// Frames share samples, as in `opaline render --frames`, and thereby all results equal between them. Changed
@@ -144,6 +176,7 @@ void ViewRenderer::anchor(const Wanted& wanted) {
 }
 
 void ViewRenderer::draw(const Wanted& wanted) {
+  if (wanted.has_new_files) restart();
   if (wanted.reference) anchor(wanted);
   Change change = anything;
   if (prepared_) {

@@ -49,6 +49,8 @@ struct ViewEvents {
   std::function<void(std::shared_ptr<const ViewPicture> picture)> picture;
   std::function<void(const ViewReport& report)> report;
   std::function<void(std::uint32_t revision, const std::string& why)> failed;
+  /// shape: its index in the scene; none: the pixel shows none
+  std::function<void(std::optional<std::size_t> shape)> picked;
 };
 
 /// error Error{run_failed}: the image needs more memory than available
@@ -65,7 +67,12 @@ class ViewRenderer {
   /// Replaces a waiting scene, and cancels the images of the current one. An image due within a frame's time
   /// is still shown, so continuous edits show images.
   /// reference: for a scene with frames, the scene with the surfaces of all frames' samples (Session::anchor)
-  void show(Scene scene, std::uint32_t revision, std::optional<Scene> reference = {});
+  /// has_new_files: files of an equal scene have changed
+  void show(Scene scene, std::uint32_t revision, std::optional<Scene> reference = {},
+            bool has_new_files = false);
+
+  /// Finds the shape at a pixel of the image before the next scene is drawn; replaces a waiting request.
+  void pick(int x, int y);
 
   /// Progress of the current work.
   const Monitor& monitor() const { return monitor_; }
@@ -81,6 +88,7 @@ class ViewRenderer {
     std::optional<Scene> reference;
     std::uint32_t revision = 0;
     Clock::time_point since;
+    bool has_new_files = false;
   };
   /// Kind of an edit, deciding the stages to recompute.
   enum Change : std::size_t { camera, lights, media, anything, kChanges };
@@ -92,6 +100,8 @@ class ViewRenderer {
 
   void run();
   std::optional<Wanted> next();
+  void restart();
+  std::optional<std::size_t> shape_at(const std::array<int, 2>& pixel) const;
   void draw(const Wanted& wanted);
   void anchor(const Wanted& wanted);
   std::shared_ptr<const ViewPicture> show_lit_anew(const Wanted& wanted, const Spent& spent);
@@ -114,8 +124,9 @@ class ViewRenderer {
   double seconds_per_pixel_ = 2e-6;  // cost of drafts
   Monitor monitor_;
   Monitor brief_;     ///< monitor of interactive work
-  std::mutex mutex_;  // guards the next four
+  std::mutex mutex_;  // guards the next five
   std::optional<Wanted> wanted_;
+  std::optional<std::array<int, 2>> picked_;
   Clock::time_point drawing_since_;
   bool stopped_ = false, is_drawing_ = false;
   std::condition_variable changed_;

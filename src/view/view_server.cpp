@@ -21,10 +21,12 @@
 #include "core/atomic_file.h"
 #include "input/load_scene.h"
 #include "opaline/error.h"
+#include "render/render.h"
 #include "scene/names.h"
 #include "values/frame_name.h"
 #include "values/json_tree.h"
 #include "view/dropped_files.h"
+#include "view/file_watch.h"
 #include "view/http_connection.h"
 #include "view/view_address.h"
 #include "view/view_background.h"
@@ -70,9 +72,11 @@ struct ViewServer::State {
   void greet(PageConnection& page);
   void receive(PageConnection& page, std::string_view text);
   void act(PageConnection& page, const PageMessage& message);
-  void after_edit();
+  void after_edit(bool has_new_files = false);
   std::string by_scene_camera() const;
   void open(PageConnection& page, const OpenFiles& dropped);
+  void reload();
+  void pick(PageConnection& page, const Pick& place);
   void save(PageConnection& page, const std::string& name);
   void render_file(PageConnection& page, const std::string& name);
   PackedFrame pack(const std::shared_ptr<const ViewPicture>& picture, const std::string& layer);
@@ -107,6 +111,8 @@ struct ViewServer::State {
   std::unique_ptr<ViewRenderer> renderer;
   std::unique_ptr<ViewBackground> background;
   BackgroundWork asked;  ///< requested background work
+  PageConnection* picking = nullptr;
+  FileWatch watch{io, [this] { reload(); }};
 };
 
 ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks)
@@ -183,6 +189,7 @@ PageConnection::Events ViewServer::State::page_events() {
           },
           [this](PageConnection& page, const std::string& why) {
             pages.erase(&page);
+            if (picking == &page) picking = nullptr;
             if (pages.empty()) work_behind({});  // no page needs it
             if (!why.empty()) hooks.refused("a page: " + why);
           }};
@@ -248,6 +255,7 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
   if (const auto* look = std::get_if<LookFrom>(&message)) edits.look(*look);
   if (std::holds_alternative<LookBack>(message)) edits.look_back();
   if (std::holds_alternative<KeepLook>(message)) edits.keep_look();
+  if (const auto* place = std::get_if<Pick>(&message)) pick(page, *place);
   if (const auto* shown = std::get_if<FrameShown>(&message)) page.shown(shown->frame);
   if (edits.revision() != before) after_edit();
 }
@@ -281,10 +289,11 @@ void ViewServer::State::take(const ChosenSettings& chosen) {
   if (edits.revision() != chosen.revision) after_edit();
 }
 
-void ViewServer::State::after_edit() {
+void ViewServer::State::after_edit(bool has_new_files) {
   background->stop();
   reference.reset();
-  renderer->show(edits.scene(), edits.revision(), edits.reference());
+  renderer->show(edits.scene(), edits.revision(), edits.reference(), has_new_files);
+  watch.watch(edits.files());
   tell(PageText::scene, scene_text(edits, hooks.command(edits.file(), edits.overrides(), edits.frame())));
   if (!std::exchange(shows_progress, true)) show_progress();
 }
@@ -302,6 +311,30 @@ void ViewServer::State::open(PageConnection& page, const OpenFiles& files) {
     throw;
   }
   page.answer(told_text(true, "opened " + path));
+}
+
+/// A file of the scene has changed on the disk.
+void ViewServer::State::reload() {
+  std::string answer;
+  try {
+    const std::string lost = edits.reload();
+    answer = told_text(lost.empty(), "opened " + edits.file() + " again" +
+                                         (lost.empty() ? "" : ", without its edits: " + lost));
+    after_edit(true);
+  } catch (const std::exception& failure) {
+    answer = told_text(false, failure.what());
+  }
+  for (PageConnection* page : pages) page->answer(answer);
+}
+
+/// Interrupts a final image: it may take long.
+void ViewServer::State::pick(PageConnection& page, const Pick& place) {
+  const Film& film = edits.scene().film;
+  const Rectangle part = rendered_part(film);
+  if (place.x >= part.x1 - part.x0 || place.y >= part.y1 - part.y0) return;
+  picking = &page;
+  renderer->pick(part.x0 + place.x, part.y0 + place.y);
+  if (renderer->is_drawing()) renderer->show(edits.scene(), edits.revision(), edits.reference());
 }
 
 /// Note on written files differing from the view.
@@ -366,6 +399,11 @@ ViewEvents ViewServer::State::renderer_events() {
           },
           [this](std::uint32_t revision, const std::string& why) {
             asio::post(io, [this, text = failed_text(revision, why)] { tell(PageText::failed, text); });
+          },
+          [this](std::optional<std::size_t> shape) {
+            asio::post(io, [this, text = picked_text(shape)] {
+              if (picking != nullptr) picking->answer(text);
+            });
           }};
 }
 

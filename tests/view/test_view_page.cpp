@@ -174,6 +174,31 @@ TEST_F(LongViewPage, DroppedAssetsAreShown) {
   EXPECT_EQ(browser.run(tab, "document.getElementById('name').value"), "box-edited");
 }
 
+// Claim: a click on a shape opens its settings, a drag and a click beside all shapes open nothing. Fails if the pixel is
+// mirrored, or if a drag counts as a click.
+TEST_F(LongViewPage, AClickOpensTheShape) {
+  final_edits();
+  const auto is_open = [&](int shape) {
+    return "document.querySelector('[data-group=\"shapes." + std::to_string(shape) + "\"]').open";
+  };
+  const auto [left, top, width, height] = box("#picture");
+  const auto click_at = [&, x = left, y = top, w = width, h = height](double across, double below,
+                                                                      double moved) {
+    browser.drag(tab, x + across * w, y + below * h, moved, 0);
+  };
+  click_at(.5, .05, 0);
+  click_at(.63, .5, 40);
+  final_edits(revision + 1);
+  for (int shape = 0; shape < 3; ++shape) EXPECT_EQ(browser.run(tab, is_open(shape)), false);
+  click("look-back");
+  final_edits(revision + 1);
+  click_at(.63, .5, 0);
+  EXPECT_TRUE(browser.comes_true(tab, is_open(1)));
+  click_at(.37, .5, 0);
+  EXPECT_TRUE(browser.comes_true(tab, is_open(0)));
+  EXPECT_EQ(browser.run(tab, is_open(2)), false);
+}
+
 // Claim: a number that is refused is replaced by the accepted one at once, in its field, and the picture stays as it is.
 // Fails if: what the page has changed goes before what the server tells of after it was refused.
 TEST_F(LongViewPage, ARefusalRestores) {

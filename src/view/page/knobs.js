@@ -113,6 +113,15 @@ export class Knobs {
     group("laboratory", "Laboratory", this.rowsOf("settings.laboratory", "settings.laboratory", (s) => (s.settings || {}).laboratory));
   }
 
+  // Opens a group and moves to it.
+  reveal(name) {
+    const group = this.root.querySelector(`details[data-group="${name}"]`);
+    if (!group) return;
+    group.open = true;
+    group.scrollIntoView({block: "start", behavior: "smooth"});
+    group.firstElementChild.focus({preventScroll: true});
+  }
+
   rowsOf(section, path, owner, without = []) {
     return [...this.rows.values()].filter((row) => row.section === section && !without.includes(row.key))
       .map((row) => this.knob(section, row.key, `${path}.${row.key}`, (s) => (owner(s) || {})[row.key]));

@@ -11,6 +11,7 @@ import {Trade} from "./trade.js";
 
 const one = (id) => document.getElementById(id);
 const kTurn = 4, kKeyTurn = .1, kKeyPan = .05, kKeyDolly = 1.1;  // radians a height; a key
+const kClick = 4;                                                  // maximum movement of a click, pixels
 const kLooksOpaque = 300;                                          // mean free paths through a body
 
 const film = {aspect: 1, shownHeight: 1, place: (seen) => seen};
@@ -160,13 +161,25 @@ function dragCamera(event) {
     if (event.ctrlKey) return approach(Math.exp(2 * y), stroke);
     turn((camera) => event.shiftKey ? pan(camera, x, y) : orbit(camera, -kTurn * x, -kTurn * y));
   };
-  const end = () => {
+  const end = (now) => {
     isDragging = false;
+    if (now.type === "pointerup" && Math.hypot(now.clientX - start, now.clientY - event.clientY) < kClick) pick(now);
     canvas.removeEventListener("pointermove", move);
     for (const name of ["pointerup", "pointercancel"]) canvas.removeEventListener(name, end);
   };
   canvas.addEventListener("pointermove", move);
   for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, end);
+}
+
+const pixelAt = (event) => {
+  const box = one("picture").getBoundingClientRect();
+  return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height].map((x, i) => Math.floor(x * film.pixels[i]));
+};
+
+// A click opens the settings of the shape below it.
+function pick(event) {
+  const [x, y] = pixelAt(event);
+  if (x >= 0 && y >= 0) connection.send({do: "pick", x, y});
 }
 
 const keyStroke = pausedStroke();
@@ -334,6 +347,7 @@ const takes = {
     one("compared").textContent = `${message.method}: ${message.samples} ${each}, noise ${message.noise ? percent(message.noise) : "unknown"}; ` +
       `the final image differs by ${percent(message.difference)} (rms of the diffuse light over translucent pixels, without this noise)`;
   },
+  picked: ({shape}) => { if (shape !== null) knobs.reveal(`shapes.${shape}`); },
   // A refused edit is dropped: the scene message follows.
   told: (message) => {
     if (!message.good) ahead.clear();
@@ -400,10 +414,8 @@ canvas.addEventListener("pointerdown", dragCamera);
 canvas.addEventListener("wheel", wheelCamera, {passive: false});
 canvas.addEventListener("keydown", keyCamera);
 canvas.addEventListener("pointermove", (event) => {
-  const box = canvas.getBoundingClientRect();
   if (!film.pixels || isDragging) return;
-  one("x").value = Math.floor((event.clientX - box.left) / box.width * film.pixels[0]);
-  one("y").value = Math.floor((event.clientY - box.top) / box.height * film.pixels[1]);
+  [one("x").value, one("y").value] = pixelAt(event);
   inspect();
 });
 addEventListener("keydown", (event) => {
