@@ -119,7 +119,7 @@ int main(int argc, char** argv) try {
     return 2;
   }
   std::vector<Subject> subjects;
-  for (const Preset& preset : presets())
+  for (const Preset& preset : measured_presets())
     subjects.push_back(
         {std::string(preset.name), fmt::format(R"({{"m": {{"preset": "{}"}}}})", preset.name)});
   for (const double melanin : {.01, .05, .15, .4}) subjects.push_back(skin(melanin));

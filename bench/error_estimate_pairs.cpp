@@ -47,7 +47,7 @@ struct RandomMedium {
 RandomMedium random_medium(Dice& dice) {
   const std::string profile = dice.chance(.5) ? "dipole" : "normalized_diffusion";
   if (dice.chance(.65)) {
-    const Preset& preset = presets()[dice.below(presets().size())];
+    const Preset& preset = measured_presets()[dice.below(measured_presets().size())];
     double longest = 0;
     for (std::size_t c = 0; c < 3; ++c)
       longest =

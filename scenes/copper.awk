@@ -10,7 +10,7 @@ function ring(radius, height,    j, angle) {
 }
 function belly(t) { return 25 + 13 * sin(pi * (0.08 + 0.8 * t)) + 7 * t ^ 6 } # radius at the height t, from 0 to 1
 BEGIN {
-  pi = atan2(0, -1); columns = 360
+  pi = atan2(0, -1); columns = 240
   for (i = 0; i < 10; ++i) ring(0.5 + (belly(0) - 3.5) * i / 9, 0)                                                  # the bottom
   for (i = 1; i <= 9; ++i) ring(belly(0) - 3 + 3 * sin(pi / 2 * i / 9), 3 - 3 * cos(pi / 2 * i / 9))                # its edge
   for (i = 1; i <= 100; ++i) ring(belly(i / 100), 3 + 74 * i / 100)                                                 # the outside

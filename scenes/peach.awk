@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Prints a peach of 68 mm in OBJ, with its blush as vertex colours: a closed mesh of 160,000 triangles, the stalk pit at the top.
+# Prints a peach of 68 mm in OBJ, with its blush as vertex colours: a closed mesh of 159,200 triangles, the stalk pit at the top.
 # usage: awk -f scenes/peach.awk
 function hash(i, j, k,    x) {
   x = sin(i * 12.9898 + j * 78.233 + k * 37.719) * 43758.5453

@@ -59,9 +59,11 @@ constexpr const char* kExample = R"({
   "media": {"marble": {"preset": "marble"}},
   "shapes": [{"name": "ball", "sphere": {"radius": 15}, "medium": "marble"}],
   "lights": [
-    {"name": "key", "type": "sphere", "center": [-40, 50, 40], "radius": 8, "radiance": 25},
-    {"name": "rim", "type": "sphere", "center": [40, 20, -50], "radius": 8, "radiance": 40}
+    {"name": "key", "type": "sphere", "center": [-40, 50, 40], "radius": 8, "radiance": 25, "visible": false},
+    {"name": "rim", "type": "sphere", "center": [40, 20, -50], "radius": 8, "radiance": 40, "visible": false}
   ],
+  "surroundings": 0.1,
+  "backdrop": 0.05,
   "camera": {"position": [0, 12, 78], "look_at": [0, 0, 0], "field_of_view": 30}
 }
 )";

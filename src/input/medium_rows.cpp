@@ -41,7 +41,9 @@ std::span<const MediumRow> medium_rows() {
   static const std::vector<MediumRow> table{
       row("medium", "preset", choice, "", kFiniteNumber, "",
           "a measured material: apple, chicken1, chicken2, cream, ketchup, marble, potato, skimmilk, skin1, "
-          "skin2, spectralon, wholemilk (Jensen et al. 2001)",
+          "skin2, spectralon, wholemilk (Jensen et al. 2001); or a look, by eye: alabaster, candle, grape, "
+          "honey, "
+          "jade, leaf, milk_glass, salmon, skin_dark, skin_fair, snow, soap, wax",
           preset_names()),
       row("medium", "sigma_a", number_or_triple, "1/mm", kNonNegative, "", "absorption"),
       row("medium", "sigma_s_prime", number_or_triple, "1/mm", kNonNegative, "",
@@ -77,10 +79,10 @@ std::span<const MediumRow> medium_rows() {
           "the same for `volume` only, with `preset` or `sigma_s_prime`: sigma_s is sigma_s_prime / (1 - g); "
           "diffusion depends on `sigma_s_prime` only"),
       row("medium", "specular_ior", number, "", {.1, 10},
-          "the preset's (marble 1.5, all others 1.3), the first layer's, else 1.3",
+          "the preset's (of measured ones 1.3, marble 1.5), the first layer's, else 1.3",
           "index of refraction, inside over outside"),
       textured<&Medium::specular_roughness, &Medium::roughness_texture>(
-          row("medium", "specular_roughness", number, "", kUnitInterval, "0",
+          row("medium", "specular_roughness", number, "", kUnitInterval, "the look's, else 0",
               "roughness of the specular reflection: 0 smooth, 0.3 satin; only a rough surface shows "
               "highlights of point, spot and directional lights")),
       row("medium", "specular_weight", number, "", {0, 1}, "1",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measured media by name.
+// Media by name: measured ones, and looks chosen by eye.
 #pragma once
 
 #include <span>
@@ -13,11 +13,14 @@ struct Preset {
   std::string_view name;
   PhysicalMedium coefficients;
   double eta;
+  double roughness = 0;  ///< specular_roughness without this key
 };
 
 /// The twelve materials of Jensen et al. 2001, A Practical Model for Subsurface Light Transport, figure 5.
+std::span<const Preset> measured_presets();
+/// These, and then the looks: diffuse reflectance and mean free path by eye, for objects of some centimetres.
 std::span<const Preset> presets();
-/// Their names, in the same order.
+/// Names of presets().
 std::span<const std::string_view> preset_names();
 
 }  // namespace opaline

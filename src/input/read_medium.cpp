@@ -167,6 +167,7 @@ Medium read_medium(const Value& value, double mm_per_unit) {
         PhysicalMedium{coefficients_at(preset.coefficients.sigma_a, reader.wavelengths()),
                        coefficients_at(preset.coefficients.sigma_s_prime, reader.wavelengths())};
     medium.eta = preset.eta;
+    medium.specular_roughness = preset.roughness;
   } else if (form == "layers") {
     medium.coefficients = PhysicalMedium{};
     medium.layers.emplace_back();  // replaced by read_layers

@@ -13,7 +13,7 @@ namespace opaline {
 class DroppedFiles {
  public:
   static constexpr std::size_t kMostFiles = 256;
-  static constexpr std::uint64_t kMostBytes = std::uint64_t(2) << 30;  ///< of a drop
+  static constexpr std::uint64_t kMostBytes = std::uint64_t(2) << 30;  ///< per drop
   /// Path of uploads: kAddress, the drop's number, '/', and the number of the file in the drop.
   static constexpr std::string_view kAddress = "/dropped/";
 

@@ -86,7 +86,7 @@ void HttpConnection::answer() {
   if (!parser_.is_done()) return refuse({http::status::bad_request, "a GET request with a body"});
   if (path == "/socket") return events_.web_socket(std::move(stream_), parser_.get(), std::move(slot_));
   for (const PageFile& file : page_files())
-    if (path == file.path) return respond(http::status::ok, file.type, file.text);
+    if (path == file.path) return respond(http::status::ok, file.type, std::string(file.bytes));
   respond(http::status::not_found, "text/plain", "there is no such file\n");
 }
 
@@ -130,7 +130,7 @@ void HttpConnection::refuse(const Refusal& refusal) {
 
 void HttpConnection::respond(http::status status, const std::string& type, std::string body) {
   response_ = {status, kVersion};
-  response_.set(http::field::content_type, type + "; charset=utf-8");
+  response_.set(http::field::content_type, type.starts_with("text/") ? type + "; charset=utf-8" : type);
   response_.set(http::field::cache_control, "no-store");
   response_.set("Referrer-Policy", "no-referrer");
   response_.set("X-Content-Type-Options", "nosniff");

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 namespace opaline {
 
 struct PageFile {
-  const char *path, *type, *text;  ///< path: behind the token
+  const char *path, *type;  ///< path: behind the token
+  std::string_view bytes;
 };
 
 std::span<const PageFile> page_files();

@@ -10,6 +10,7 @@
 #include "core/log.h"
 #include "core/units.h"
 #include "input/load_scene.h"
+#include "input/presets.h"
 #include "input/schema.h"
 #include "plan/choose_models.h"
 #include "plan/expected_error.h"
@@ -45,14 +46,16 @@ Json row_json(const KeyInfo& info) {
           {"choices", choices}};
 }
 
-Json preset_json(std::string_view name) {
+Json preset_json(std::string_view name, bool is_measured) {
   const Medium medium = parse_medium(fmt::format("{{\"preset\": \"{}\"}}", name), "preset");
   const auto& physical = std::get<PhysicalMedium>(medium.coefficients);
   const auto triple = [](const Rgb& c) { return Json{c.x, c.y, c.z}; };
   return {{"name", name},
           {"sigma_a", triple(physical.sigma_a)},
           {"sigma_s_prime", triple(physical.sigma_s_prime)},
-          {"specular_ior", medium.eta}};
+          {"specular_ior", medium.eta},
+          {"specular_roughness", medium.specular_roughness},
+          {"is_measured", is_measured}};
 }
 
 Json group_json(const Scene& scene, const BodyPlan& group) {
@@ -74,8 +77,8 @@ Json group_json(const Scene& scene, const BodyPlan& group) {
 std::string schema_text() {
   Json rows = Json::array(), presets = Json::array();
   for (const KeyInfo& info : schema()) rows.push_back(row_json(info));
-  for (const std::string_view name : key_info("medium", "preset").choices)
-    presets.push_back(preset_json(name));
+  for (const std::string_view name : preset_names())
+    presets.push_back(preset_json(name, presets.size() < measured_presets().size()));
   return compact({{"is", "schema"}, {"rows", rows}, {"presets", presets}, {"version", OPALINE_VERSION}});
 }
 

@@ -129,7 +129,7 @@ TEST_F(LongViewPage, TheCameraIsFree) {
   expect_shown(rendered(folder.scene));
 }
 
-// Claim: a shape becomes translucent by a measured medium that the scene did not have, and opaque again; each is one step of
+// Claim: a shape becomes translucent by a preset that the scene did not have, from the list or by its image, and opaque again; each is one step of
 // undo. Source: knobs.js. Fails if: the surface of before stays in the way, or the medium is not added.
 TEST_F(LongViewPage, ShapesChangeTheirMaterial) {
   final_edits();
@@ -143,6 +143,9 @@ TEST_F(LongViewPage, ShapesChangeTheirMaterial) {
   std::vector<std::string> edits = choose("skin1");
   EXPECT_EQ(edits.back(), "shapes.left.medium=\"skin1\"");
   expect_shown(rendered(folder.scene, {"media.skin1.preset=skin1", "shapes.left.medium=skin1"}));
+  browser.run(tab, "document.querySelector('[aria-label=\"shapes.left.medium jade\"]').click()");
+  EXPECT_EQ(final_edits(revision + 1).back(), "shapes.left.medium=\"jade\"");
+  expect_shown(rendered(folder.scene, {"media.jade.preset=jade", "shapes.left.medium=jade"}));
   EXPECT_EQ(choose("").back(), "shapes.left.reflectance=0.5");
   expect_shown(rendered(folder.scene, {"shapes.left.reflectance=0.5"}));
   EXPECT_EQ(choose("stone").back(), "shapes.left.medium=\"stone\"");
@@ -150,7 +153,7 @@ TEST_F(LongViewPage, ShapesChangeTheirMaterial) {
     browser.key(tab, "z", 2);
     edits = final_edits(revision + 1);
   }
-  EXPECT_EQ(edits.back(), "shapes.left.medium=\"skin1\"");
+  EXPECT_EQ(edits.back(), "shapes.left.medium=\"jade\"");
 }
 
 // Claim: an asset and its material file dropped onto the page are shown as rendered, and become translucent there. Fails if

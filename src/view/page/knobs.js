@@ -20,6 +20,7 @@ const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_wei
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"], shift: ["right", "up"]};
 const kEither = [["field_of_view", "orthographic_height"], ["aperture", "f_number"], ["focus_distance", "focus_point"]];
 const unusedOf = (camera) => kEither.map(([usual, other]) => other in (camera || {}) ? usual : other);
+const kThumbnail = 42, kThumbnailsARow = 5;  // of presets.png, as in view.css
 const kWidestLinear = 1000, kDecade = 1;
 
 // Textures and spectra, shown as text.
@@ -104,7 +105,7 @@ export class Knobs {
     for (const name of Object.keys(scene.media || {})) group(`media.${name}`, `Medium ${name}`, this.mediumRows(name));
     (scene.lights || []).forEach((light, i) => group(`lights.${i}`, `Light ${light.name || i}`, this.rowsOf(`light.${light.type}`, this.pathOf("lights", i), (s) => s.lights[i], ["type", "name"])));
     group("scene", "Scene", ["surroundings", "backdrop", "mm_per_unit"].map((key) => this.knob("scene", key, key, (s) => s[key])));
-    (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`, [this.materialRow(i),
+    (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`, [...this.materialRow(i),
       ...[...("medium" in shape ? [] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), "normals", "visible"].map((key) =>
         this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))]));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera, unusedOf(scene.camera)));
@@ -127,22 +128,29 @@ export class Knobs {
       .map((row) => this.knob(section, row.key, `${path}.${row.key}`, (s) => (owner(s) || {})[row.key]));
   }
 
-  // Opaque, a medium of the scene, or a measured one, added to the scene.
+  // Opaque, a medium of the scene, or a preset, added to the scene.
   materialRow(i) {
     const media = Object.keys(this.scene.media || {}), path = `${this.pathOf("shapes", i)}.medium`;
-    const measured = [...this.presets.keys()].filter((name) => !media.includes(name));
-    const options = (names) => names.map((name) => make("option", {textContent: name}));
-    const select = make("select", {ariaLabel: path}, make("option", {value: "", textContent: "opaque"}),
-      ...(media.length ? [make("optgroup", {label: "media of the scene"}, ...options(media))] : []),
-      make("optgroup", {label: "measured media"}, ...options(measured)));
-    select.onchange = () => {
-      const name = select.value, added = measured.includes(name) ? {[`media.${name}`]: {preset: name}} : {};
+    const choose = (name) => {
+      const added = name && !media.includes(name) ? {[`media.${name}`]: {preset: name}} : {};
       this.set(name ? {...added, [path]: name} : {[path.replace(/medium$/, "reflectance")]: .5}, newStroke());
     };
+    const group = (label, names) => names.length ? [make("optgroup", {label}, ...names.map((name) => make("option", {textContent: name})))] : [];
+    const presets = (isMeasured) => [...this.presets.values()].filter((preset) => preset.is_measured === isMeasured && !media.includes(preset.name)).map(({name}) => name);
+    const select = make("select", {ariaLabel: path, onchange: () => choose(select.value)}, make("option", {value: "", textContent: "opaque"}),
+      ...group("media of the scene", media), ...group("measured media", presets(true)), ...group("looks, by eye", presets(false)));
+    const buttons = [...this.presets.keys()].map((name, at) => {
+      const button = make("button", {type: "button", title: name, ariaLabel: `${path} ${name}`, onclick: () => choose(name)});
+      button.style.backgroundPosition = `${-kThumbnail * (at % kThumbnailsARow)}px ${-kThumbnail * Math.floor(at / kThumbnailsARow)}px`;
+      return button;
+    });
     const root = make("label", {className: "knob", title: "opaque, or a translucent medium inside a closed mesh"},
       make("span", {className: "name", textContent: "material"}), select);
-    this.knobs.push({path, root, value: (s) => s.shapes[i].medium, show: (medium) => { select.value = medium || ""; }});
-    return root;
+    this.knobs.push({path, root, value: (s) => s.shapes[i].medium, show: (medium) => {
+      select.value = medium || "";
+      for (const button of buttons) button.setAttribute("aria-pressed", String(button.title === medium));
+    }});
+    return [root, make("div", {className: "presets", role: "group", ariaLabel: "presets"}, ...buttons)];
   }
 
   mediumRows(name) {
@@ -164,8 +172,9 @@ export class Knobs {
       sigma_s: {...start, sigma_s: preset.sigma_s_prime || medium.sigma_s_prime || 2},
       subsurface_color: {subsurface_color: [.8, .7, .6], subsurface_radius: 1},
     }[form];
-    const ior = medium.specular_ior || preset.specular_ior;
-    return {...made, ...(ior && form !== "preset" ? {specular_ior: ior} : {}), ...(medium.profile ? {profile: medium.profile} : {}), ...(medium.fit ? {fit: medium.fit} : {})};
+    const boundary = {specular_ior: medium.specular_ior || preset.specular_ior, specular_roughness: medium.specular_roughness ?? preset.specular_roughness};
+    for (const [key, value] of Object.entries(boundary)) if (value && form !== "preset") made[key] = value;
+    return {...made, ...(medium.profile ? {profile: medium.profile} : {}), ...(medium.fit ? {fit: medium.fit} : {})};
   }
 
   knob(section, key, path, value) {
@@ -249,7 +258,7 @@ export class Knobs {
     };
     const slider = this.slider(row, () => now, (value, stroke) => set(value, stroke));
     knob.show = (value) => {
-      now = value ?? (row.key === "specular_ior" ? this.iorOf(knob) : defaultOf(row));
+      now = value ?? this.presetOf(knob)?.[row.key] ?? defaultOf(row);
       if (now !== shown) input.value = now ?? "";
       shown = now;
       slider.show(now);
@@ -257,9 +266,10 @@ export class Knobs {
     box.append(slider.input, input);
   }
 
-  iorOf(knob) {
-    const medium = this.scene.media[knob.path.split(".")[1]];
-    return this.presets.get(medium.preset)?.specular_ior ?? 1.3;
+  // Values of a medium without keys of its own.
+  presetOf(knob) {
+    if (knob.row.section !== "medium") return undefined;
+    return this.presets.get(this.scene.media[knob.path.split(".")[1]]?.preset) ?? {specular_ior: 1.3, specular_roughness: 0};
   }
 
   // One field a number; set(values): with the one that was typed and the others as the scene has them, `now()`, or as
