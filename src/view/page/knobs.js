@@ -20,7 +20,7 @@ const kGloss = ["metalness", "specular_roughness", "specular_ior", "specular_wei
 const kLists = {resolution: ["width", "height"], crop: ["x0", "y0", "x1", "y1"], shift: ["right", "up"]};
 const kEither = [["field_of_view", "orthographic_height"], ["aperture", "f_number"], ["focus_distance", "focus_point"]];
 const unusedOf = (camera) => kEither.map(([usual, other]) => other in (camera || {}) ? usual : other);
-const kThumbnail = 42, kThumbnailsARow = 5;  // of presets.png, as in view.css
+const kThumbnail = 42, kThumbnailsARow = 5;  // in presets.png; sizes as in view.css
 const kWidestLinear = 1000, kDecade = 1;
 
 // Textures and spectra, shown as text.
