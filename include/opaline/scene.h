@@ -66,16 +66,18 @@ inline Rgb at_wavelengths(const std::array<Rgb, 3>& from_rgb, const Rgb& color) 
   return {dot(from_rgb[0], color), dot(from_rgb[1], color), dot(from_rgb[2], color)};
 }
 
-class TextureFile;
-/// An image replacing a constant, mapped by the mesh's UVs.
+class TextureSource;
+/// An image, or a pattern in space, replacing a constant.
 struct Texture {
-  std::shared_ptr<const TextureFile> file;
+  std::shared_ptr<const TextureSource> source;
   Rgb scale{1, 1, 1};       ///< factor on its colours; the first one on its numbers
   std::size_t channel = 0;  ///< channel of the file, for a number
   /// From UVs to the image, about its upper left corner: scaled, rotated (degrees), translated
   /// (KHR_texture_transform).
   std::array<double, 2> uv_offset{0, 0}, uv_scale{1, 1};
   double uv_rotation = 0;
+  /// Width of an image projected along the three axes of the shape's space, mm; 0: mapped by the mesh's UVs.
+  double triplanar_width = 0;
   bool is_relative = false;  ///< scaled to a mean of 1: its texels may exceed 1, unlike other colours
   /// ThreeWavelengths::from_rgb, applied to its colours before `scale`; none: red, green and blue.
   std::optional<std::array<Rgb, 3>> from_rgb{};

@@ -166,6 +166,18 @@ class SceneExport:
         return keys | {"media": self.media, "shapes": self.shapes, "lights": self.lights}
 
 
+def write_if_changed(path, text):
+    """Writes a file unless it has this text: the live view shows each written file."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            if file.read() == text:
+                return
+    except OSError:
+        pass
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
 def export_scene(depsgraph, folder, camera_object, name="scene.json"):
     """Writes the scene to a folder.
 
@@ -174,8 +186,7 @@ def export_scene(depsgraph, folder, camera_object, name="scene.json"):
     export = SceneExport(depsgraph, folder)
     keys = export.keys(camera_object)
     path = os.path.join(folder, name)
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(keys, file, indent=1)
+    write_if_changed(path, json.dumps(keys, indent=1))
     return path, keys, export.warnings
 
 

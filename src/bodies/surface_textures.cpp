@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/cancel_check.h"
+#include "image/solid_noise.h"
 #include "image/texture_file.h"
 #include "opaline/error.h"
 #include "scene/scene_properties.h"
@@ -37,8 +38,83 @@ TexturePlace texture_place(const Texture& texture, const SurfaceUv& at, const Fo
           side(footprint.y), on_whole_face && maps_uvs_unchanged(texture)};
 }
 
+/// One of the three projections of an image along an axis: two axes of the shape's space with their signs, for an image
+/// unmirrored from outside, and the weight.
+struct Projection {
+  std::size_t right, up;
+  double right_sign, up_sign, weight;
+};
+
+/// Weights by the fourth power of the normal's components.
+std::array<Projection, 3> projections(const Vec3d& normal) {
+  const auto side = [&](std::size_t c) { return normal[c] < 0 ? -1. : 1.; };
+  std::array<Projection, 3> all{{{2, 1, -side(0), 1, 0}, {0, 2, 1, -side(1), 0}, {0, 1, side(2), 1, 0}}};
+  double sum = 0;
+  for (std::size_t c = 0; c < 3; ++c) sum += all[c].weight = std::pow(normal[c], 4);
+  for (Projection& one : all) one.weight = sum > 0 ? one.weight / sum : 1. / 3;
+  return all;
+}
+
+TexturePlace projected(const Projection& along, double width, const SolidPlace& solid) {
+  const auto on_image = [&](const Vec3d& v) {
+    return std::array<float, 2>{float(along.right_sign * v[along.right] / width),
+                                float(-along.up_sign * v[along.up] / width)};
+  };
+  const auto [u, v] = on_image(solid.point);
+  return {u, v, on_image(solid.x), on_image(solid.y)};
+}
+
+double filter_width(const SolidPlace& solid) {
+  return std::sqrt(length(solid.x) * length(solid.y));
+}
+
+constexpr double kLeastWeight = 1e-3;  // least weight of a projection
+
+std::array<float, 4> solid_value(const Texture& texture, const SolidPlace& solid) {
+  if (const SolidNoise* noise = texture.source->noise()) return noise->at(solid.point, filter_width(solid));
+  std::array<float, 4> sum{};
+  float weights = 0;
+  for (const Projection& along : projections(solid.normal)) {
+    if (along.weight < kLeastWeight) continue;
+    const std::array<float, 4> texel =
+        texture.source->image()->at(projected(along, texture.triplanar_width, solid));
+    for (std::size_t c = 0; c < 4; ++c) sum[c] += float(along.weight) * texel[c];
+    weights += float(along.weight);
+  }
+  for (float& value : sum) value /= weights;
+  return sum;
+}
+
+/// Gradient of a channel of solid_value() in the space of the shape, 1/mm.
+Vec3d solid_gradient(const Texture& texture, const SolidPlace& solid) {
+  if (const SolidNoise* noise = texture.source->noise())
+    return noise->gradient(solid.point, filter_width(solid), texture.channel);
+  Vec3d sum;
+  for (const Projection& along : projections(solid.normal)) {
+    if (along.weight < kLeastWeight) continue;
+    const auto [right, down] =
+        texture.source->image()->slope(projected(along, texture.triplanar_width, solid), texture.channel);
+    sum[along.right] += along.right_sign * along.weight * double(right) / texture.triplanar_width;
+    sum[along.up] -= along.up_sign * along.weight * double(down) / texture.triplanar_width;
+  }
+  return sum;
+}
+
 std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Place& place) {
-  return texture.file->at(texture_place(texture, *place.uv, place.footprint, place.on_whole_face));
+  if (is_solid(texture)) return solid_value(texture, place.solid);
+  return texture.source->image()->at(texture_place(texture, *place.uv, place.footprint, place.on_whole_face));
+}
+
+/// The space of a shape; a transform without an inverse gives that of the world.
+SolidSpace solid_space(const Transform& to_world) {
+  const Vec3d across_x = cross(to_world.y, to_world.z), across_y = cross(to_world.z, to_world.x),
+              across_z = cross(to_world.x, to_world.y);
+  const double volume = dot(to_world.x, across_x);
+  SolidSpace space;
+  const Vec3d x = across_x / volume, y = across_y / volume, z = across_z / volume;
+  if (is_finite(x) && is_finite(y) && is_finite(z)) space = {x, y, z, {}};
+  space.origin = to_world.translation;
+  return space;
 }
 
 RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
@@ -61,16 +137,16 @@ float slope_of(float value) {
 
 /// error if a tile of the texture is missing at the centroid of a triangle
 void check_tiles(const Texture& texture, const Mesh& mesh, const std::string& shape) {
-  if (texture.file->has_tile(-1, -1)) return;
+  if (is_solid(texture) || texture.source->image()->has_tile(-1, -1)) return;
   for (const CornerUvs& uvs : mesh.uvs) {
     SurfaceUv middle;
     for (const auto& corner : uvs)
       for (std::size_t k = 0; k < 2; ++k) middle.uv[k] += corner[k] / 3;
     const TexturePlace place = texture_place(texture, middle, {});
     const int column = int(std::floor(place.u)), row = int(std::floor(1 - place.v));
-    if (texture.file->has_tile(column, row)) continue;
+    if (texture.source->image()->has_tile(column, row)) continue;
     throw told_at(texture.place,
-                  bad_file(texture.file->path(), "has no tile where the UVs of '" + shape + "' need one",
+                  bad_file(texture.source->path(), "has no tile where the UVs of '" + shape + "' need one",
                            "a file " + std::to_string(1001 + column + 10 * row)));
   }
 }
@@ -118,7 +194,8 @@ float slope_variance(const Texture& texture, const SurfaceTextures::Place& place
   for (std::size_t c = 0; c < 3; ++c) squares += (2 * texel[c] - 1) * (2 * texel[c] - 1);
   if (!(squares < 1)) return 0;
   const float variance = std::min(kMost, (1 / std::max(squares * squares, 1e-4f) - 1) / 4);
-  const float texels = texture.file->texels_across(texture_place(texture, *place.uv, place.footprint));
+  const float texels =
+      texture.source->image()->texels_across(texture_place(texture, *place.uv, place.footprint));
   return variance * std::clamp(texels - 1, 0.f, 1.f);
 }
 
@@ -138,7 +215,7 @@ float map_normal(const Texture& texture, const SurfaceTextures::Place& place, Su
 
 /// Height gradient of the height over the surface, mm per world unit.
 Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
-  const auto [along_u, along_v] = texture.file->slope(
+  const auto [along_u, along_v] = texture.source->image()->slope(
       texture_place(texture, *place.uv, place.footprint, place.on_whole_face), texture.channel);
   // Angle of the image's u and v, by the mesh's.
   const double angle = texture.uv_rotation * std::numbers::pi / 180;
@@ -147,6 +224,12 @@ Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& plac
               y = place.uv->gradient_v * float(-texture.uv_scale[1]);
   const Vec3f of_u = x * float(cosine) + y * float(sine), of_v = y * float(cosine) - x * float(sine);
   return (of_u * along_u + of_v * along_v) * float(texture.scale.x);
+}
+
+/// Gradient of the height in space, mm per mm.
+Vec3f solid_rise(const Texture& texture, const SolidSpace& space, const SolidPlace& solid) {
+  const Vec3d inside = solid_gradient(texture, solid);
+  return Vec3f((space.x * inside.x + space.y * inside.y + space.z * inside.z) * texture.scale.x);
 }
 
 /// Around +y, as turned on a lathe; where the normal is +y itself, along x.
@@ -164,6 +247,15 @@ bool follows_textures_of(const Scene& scene, const World& world, std::size_t sha
     if (m == shape || are_one_body(scene.shapes[m], scene.shapes[shape]))
       is_closed = is_closed && world.reports[m].open_edges == 0;
   return follows_textures_inside(scene.settings.method, is_closed);
+}
+
+/// UVs of meshes, or the space of textures without them.
+void add_spaces(KeyBuilder& key, const Scene& scene, const World& world,
+                std::span<const std::uint32_t> meshes) {
+  for (const std::uint32_t m : meshes) {
+    key.add_array(std::span(world.meshes[m].uvs));
+    add_solid_space(key, scene, m);
+  }
 }
 
 }  // namespace
@@ -204,10 +296,12 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world)
     own.has_whole_faces = std::holds_alternative<QuadShape>(shape.source) ||
                           std::holds_alternative<BoxShape>(shape.source) ||
                           std::holds_alternative<SlabShape>(shape.source);
-    is_empty_ = is_empty_ && !own.has_tint && !needs_uvs(scene, shape) && own.grain == nullptr &&
+    const std::vector<const Texture*> textures = textures_of(scene, shape);
+    if (std::ranges::any_of(textures, [](const Texture* texture) { return is_solid(*texture); }))
+      own.space = solid_space(shape.to_world);
+    is_empty_ = is_empty_ && !own.has_tint && textures.empty() && own.grain == nullptr &&
                 own.partly_opaque == nullptr;
-    for (const Texture* texture : textures_of(scene, shape))
-      check_tiles(*texture, world.meshes[m], shape.name);
+    for (const Texture* texture : textures) check_tiles(*texture, world.meshes[m], shape.name);
   }
 }
 
@@ -220,6 +314,7 @@ SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t 
   Place place{mesh, {}, footprint};
   place.on_whole_face = of_mesh_[mesh].has_whole_faces;
   if (of_mesh_[mesh].has_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
+  if (of_mesh_[mesh].space) place.solid = solid_place(of_mesh_[mesh], mesh, triangle, u, v, footprint);
   if (of_mesh_[mesh].has_tangents) place.tangent = surface_tangent(world_.meshes[mesh], triangle, u, v);
   if (of_mesh_[mesh].has_colors) {
     place.color = surface_color(world_.meshes[mesh], triangle, u, v);
@@ -227,6 +322,21 @@ SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t 
       place.color = RgbF(component_max(at_wavelengths(wavelengths_->from_rgb, Rgb(place.color)), Rgb{}));
   }
   return place;
+}
+
+SolidPlace SurfaceTextures::solid_place(const OfMesh& own, std::uint32_t mesh, std::uint32_t triangle,
+                                        float u, float v, const Footprint& footprint) const {
+  const Mesh& surface = world_.meshes[mesh];
+  std::array<Vec3d, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k)
+    corners[k] = out_of_world(world_, Vec3d(surface.positions[surface.triangles[triangle][k]]));
+  const auto inside = [&](const Vec3d& v_world) {
+    return Vec3d{dot(own.space->x, v_world), dot(own.space->y, v_world), dot(own.space->z, v_world)};
+  };
+  const Vec3d side_u = inside(corners[1] - corners[0]), side_v = inside(corners[2] - corners[0]);
+  const Vec3d corner = inside(corners[0] - own.space->origin);
+  return {corner + side_u * double(u) + side_v * double(v), normalized(cross(side_u, side_v)),
+          inside(Vec3d(footprint.x) * world_.unit), inside(Vec3d(footprint.y) * world_.unit)};
 }
 
 SurfaceTint SurfaceTextures::tint(const Place& place) const {
@@ -282,7 +392,8 @@ float SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
     for (const Texture& detail : own.normals->details) variance += map_normal(detail, place, point);
   }
   if (own.heights == nullptr) return variance;
-  const Vec3f rise = height_gradient(*own.heights, place) * float(1 / world_.unit),
+  const Vec3f rise = is_solid(*own.heights) ? solid_rise(*own.heights, *own.space, place.solid)
+                                            : height_gradient(*own.heights, place) * float(1 / world_.unit),
               along = rise - point.normal * dot(rise, point.normal);
   if (along != Vec3f{}) point.normal = normalized(point.normal - along * outward(place));
   return variance;
@@ -319,14 +430,22 @@ void add_coordinates(KeyBuilder& key, const Mesh& mesh) {
 }
 
 void add_to_key(KeyBuilder& key, const Texture& texture) {
-  key.add(texture.file->hash())
+  key.add(texture.source->hash())
       .add(texture.scale)
       .add(std::uint64_t(texture.channel))
       .add(texture.is_relative);
   if (texture.from_rgb)
     for (const Rgb& row : *texture.from_rgb) key.add(row);
   key.add(texture.uv_offset).add(texture.uv_scale).add(texture.uv_rotation);
+  if (texture.triplanar_width > 0) key.add(std::string("triplanar")).add(texture.triplanar_width);
   for (const Texture& detail : texture.details) add_to_key(key.add(std::string("detail")), detail);
+}
+
+void add_solid_space(KeyBuilder& key, const Scene& scene, std::size_t shape) {
+  const auto solid = [](const Texture* texture) { return is_solid(*texture); };
+  if (std::ranges::none_of(textures_of(scene, scene.shapes[shape]), solid)) return;
+  const Transform& space = scene.shapes[shape].to_world;
+  key.add(std::string("space")).add(space.x).add(space.y).add(space.z).add(space.translation);
 }
 
 void add_vertex_colors(KeyBuilder& key, const Scene& scene, const Mesh& mesh) {
@@ -354,11 +473,12 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
   if (!has_texture && !medium.weight_texture) return key.key();
   if (has_texture) add_to_key(key, *medium.tint_texture);
   if (medium.weight_texture) add_to_key(key.add(std::string("weight")), *medium.weight_texture);
-  for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
+  add_spaces(key, scene, world, meshes);
   return key.key();
 }
 
-StageKey medium_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes) {
+StageKey medium_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes) {
+  const Medium& medium = scene.media[scene.shapes[meshes.front()].medium.value()];
   if (!varies_inside(medium)) return {};
   if (!medium.layers.empty()) {
     KeyBuilder key("layers inside", 1);
@@ -367,7 +487,7 @@ StageKey medium_key(const Medium& medium, const World& world, std::span<const st
       key.add(layer.coefficients).add(layer.thickness);
       if (layer.thickness_texture) add_to_key(key.add(std::string("thickness")), *layer.thickness_texture);
     }
-    for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
+    add_spaces(key, scene, world, meshes);
     return key.key();
   }
   const auto& mean = std::get<ArtistMedium>(medium.coefficients);
@@ -376,7 +496,7 @@ StageKey medium_key(const Medium& medium, const World& world, std::span<const st
   key.add(profile_kind(medium)).add(profile_thickness(medium));
   if (has_color_inside(medium)) add_to_key(key.add(std::string("color")), *medium.tint_texture);
   if (medium.radius_texture) add_to_key(key.add(std::string("radius")), *medium.radius_texture);
-  for (const std::uint32_t m : meshes) key.add_array(std::span(world.meshes[m].uvs));
+  add_spaces(key, scene, world, meshes);
   return key.key();
 }
 

@@ -20,6 +20,12 @@ struct Footprint {
   Vec3f x{}, y{};
 };
 
+/// Position in the space of the shape, mm, for textures without UVs.
+struct SolidPlace {
+  Vec3d point{}, normal{};  ///< normal: unit, of the triangle
+  Vec3d x{}, y{};           ///< sides of the footprint
+};
+
 /// Factors on light as it enters a surface and as it leaves.
 struct SurfaceTint {
   RgbF entering{1, 1, 1}, leaving{1, 1, 1};
@@ -28,6 +34,12 @@ struct SurfaceTint {
 /// Factors on a textured medium's properties at a point, relative to their means; constant properties are 1.
 struct MediumFactors {
   RgbF color{1, 1, 1}, radius{1, 1, 1};
+};
+
+/// Between the world and the space of a shape.
+struct SolidSpace {
+  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< rows of the linear map to the space of the shape
+  Vec3d origin{};                            ///< origin of that space, mm
 };
 
 class SurfaceTextures {
@@ -47,6 +59,7 @@ class SurfaceTextures {
     std::uint32_t mesh;
     std::optional<SurfaceUv> uv;  ///< none: not needed, or missing in the mesh
     Footprint footprint;
+    SolidPlace solid{};          ///< unset: no texture of the mesh needs it
     Tangent tangent{};           ///< tangent of the mesh, world units; zero: missing
     RgbF color{1, 1, 1};         ///< color of the mesh's vertices
     bool from_behind = false;    ///< the normals are flipped: the back of a sheet is visible
@@ -76,7 +89,10 @@ class SurfaceTextures {
     bool has_whole_faces = false, has_tint = false, has_uv = false, has_tangents = false, has_colors = false;
     const Grain* grain = nullptr;
     const Medium* partly_opaque = nullptr;
+    std::optional<SolidSpace> space{};  ///< for textures without UVs
   };
+  SolidPlace solid_place(const OfMesh& own, std::uint32_t mesh, std::uint32_t triangle, float u, float v,
+                         const Footprint& footprint) const;
 
   const World& world_;
   std::vector<OfMesh> of_mesh_;
@@ -100,6 +116,8 @@ bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh
 /// empty if no tint applies there.
 std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<const SurfaceSample> samples);
 
+/// Adds the space of textures without UVs to a key, for shapes with such textures.
+void add_solid_space(KeyBuilder& key, const Scene& scene, std::size_t shape);
 /// Adds a scene's texture to a key: its file's contents and mapping; with the UVs of some meshes.
 void add_to_key(KeyBuilder& key, const Texture& texture);
 /// A mesh's vertex colours, at the wavelengths of the scene.
@@ -111,7 +129,7 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
                   const StageKey& samples);
 /// Cache key of the textures varying a medium inside bodies of these meshes; a key of zeros if there are
 /// none.
-StageKey medium_key(const Medium& medium, const World& world, std::span<const std::uint32_t> meshes);
+StageKey medium_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes);
 
 /// Footprint of a cone on a surface.
 /// in    direction: of the ray, of any length; width: of the cone there

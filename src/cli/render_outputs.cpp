@@ -24,7 +24,8 @@ std::vector<std::string> input_files(const Scene& scene) {
   std::vector<std::string> files{scene.file};
   for (const Shape& shape : scene.shapes) {
     if (const auto* mesh = std::get_if<MeshFile>(&shape.source)) files.push_back(mesh->path);
-    for (const Texture* texture : textures_of(scene, shape)) files.push_back(texture->file->path());
+    for (const Texture* texture : textures_of(scene, shape))
+      if (texture->source->image() != nullptr) files.push_back(texture->source->path());
   }
   for (const Light& light : scene.lights)
     if (const auto* environment = std::get_if<EnvironmentLight>(&light.source))

@@ -11,6 +11,7 @@
 
 #include "opaline/enumerations.h"
 #include "opaline/vec3.h"
+#include "scene/texture_source.h"
 
 namespace opaline {
 
@@ -20,20 +21,6 @@ struct TexturePlace {
   float u = 0, v = 0;
   std::array<float, 2> side_x{}, side_y{};
   bool ends_at_edges = false;  ///< the image is not repeated: filters use its border beyond its edges
-};
-
-/// Memory for reading a whole texture, bytes.
-struct TextureMemory {
-  std::size_t decoded = 0;  ///< temporary, of the largest image
-  std::size_t cached = 0;   ///< all sizes; all textures together are limited by cache_limit
-};
-
-using Texel = std::array<double, 4>;  ///< red, green, blue, alpha; three equal for a grey image; no alpha: 1
-
-/// Texels with a colour above 1.
-struct TexelsAboveOne {
-  std::size_t count = 0, texels = 0;  ///< texels above 1, and all
-  double largest = 0;
 };
 
 /// Use of a texture's texels. Colours become linear Rec.709, by the file's primaries, without premultiplied
@@ -51,7 +38,7 @@ class CachedPicture;
 
 /// A repeated image, or several side by side: "<UDIM>" in a file's name represents 1001 + column + 10 x row,
 /// rows counted upwards. Texels are read on demand at the appropriate size, in a cache of limited size.
-class TextureFile {
+class TextureFile final : public TextureSource {
  public:
   /// in    path: EXR, HDR, PNG, JPEG or TIFF, a name with "<UDIM>", or "asset.glb#image/3" by its index in
   ///       the asset; space: not automatic
@@ -68,7 +55,7 @@ class TextureFile {
   /// Colour space of a file without a declared one: linear for floats, otherwise sRGB.
   /// error as open
   static ColorSpace space_of_colors(const std::string& path);
-  ~TextureFile();
+  ~TextureFile() override;
 
   /// Filtered mean. Thread-safe.
   /// error Error{bad_input} naming the file: damaged there
@@ -78,26 +65,23 @@ class TextureFile {
   std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const;
   /// Length of the longer side of a footprint, texels of the full size.
   float texels_across(TexturePlace place) const;
-  /// Value of all texels, if it is constant.
-  const std::optional<Texel>& constant() const { return constant_; }
-  /// Float texels exceeding 1 after multiplication by `scale`, except small excesses left by filters. Reads
-  /// the whole image, once per scale.
-  TexelsAboveOne above_one(const Vec3d& scale) const;
-  /// Mean of all texels; reads the whole image the first time.
-  Texel mean() const;
 
-  const std::string& path() const { return path_; }
-  /// Ignored parts and negative colours of the first file with them; empty: none.
-  const std::string& warning() const { return warning_; }
-  /// True if all its images have this channel of at(): 0 red to 3 alpha. A grey image has the first three.
-  bool has_channel(std::size_t channel) const { return has_channel_[channel]; }
-  TextureMemory memory() const;
+  const TextureFile* image() const override { return this; }
+  std::optional<Texel> constant() const override { return constant_; }
+  /// Reads the whole image, once per scale.
+  TexelsAboveOne above_one(const Vec3d& scale) const override;
+  /// Reads the whole image the first time.
+  Texel mean() const override;
+  std::string path() const override { return path_; }
+  std::string warning() const override { return warning_; }
+  bool has_channel(std::size_t channel) const override { return has_channel_[channel]; }
+  TextureMemory memory() const override;
   /// Size limit of the cache shared by all textures, bytes.
   static std::size_t cache_limit();
   /// True if there is an image for this tile, v upwards; a plain image covers all tiles.
   bool has_tile(int column, int row) const;
   /// Hash of the file's bytes and its colour space.
-  std::uint64_t hash() const { return hash_; }
+  std::uint64_t hash() const override { return hash_; }
 
  private:
   TextureFile() = default;

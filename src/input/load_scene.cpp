@@ -212,10 +212,10 @@ void share_lengths(std::span<Scene> scenes) {
 }
 
 /// A scene with spectra is read once for each group of wavelengths.
-Scene read_at_wavelengths(const Document& given) {
-  std::optional<Document> radiometric;
-  if (has_photometric_values(given)) resolve_photometric_values(radiometric.emplace(given));
-  const Document& document = radiometric ? *radiometric : given;
+Scene read_at_wavelengths(Document& document) {
+  if (const Node* unit = find_member(document.root, "mm_per_unit"))
+    document.mm_per_unit = Value(document, *unit, "mm_per_unit", key_info("scene", "mm_per_unit")).number();
+  if (has_photometric_values(document)) resolve_photometric_values(document);
   const std::optional<int> count = wavelengths_of(document);
   if (!count) return read_scene(document);
   std::vector<Scene> scenes;
@@ -236,10 +236,10 @@ Scene read_at_wavelengths(const Document& given) {
 /// Warning of a texture's colours above 1; empty: none, or a texture relative to its mean.
 std::string clipped_colors(const std::optional<Texture>& texture) {
   if (!texture || texture->is_relative) return {};
-  const TexelsAboveOne above = texture->file->above_one(texture->scale);
+  const TexelsAboveOne above = texture->source->above_one(texture->scale);
   if (above.count == 0) return {};
   return fmt::format("{}: {} of {} texels{} have a colour above 1, rendered as 1; the largest is {:.3g}",
-                     texture->file->path(), above.count, above.texels,
+                     texture->source->path(), above.count, above.texels,
                      texture->scale == Vec3d(1) ? "" : " times their scale", above.largest);
 }
 
@@ -253,7 +253,7 @@ std::vector<std::string> texture_warnings(const Scene& scene) {
     warnings.insert(clipped_colors(scene.media[*shape.medium].base_texture));
   }
   for (const Shape& shape : scene.shapes)
-    for (const Texture* texture : textures_of(scene, shape)) warnings.insert(texture->file->warning());
+    for (const Texture* texture : textures_of(scene, shape)) warnings.insert(texture->source->warning());
   warnings.erase("");
   return {warnings.begin(), warnings.end()};
 }

@@ -144,12 +144,9 @@ void resolve(const Document& document, Node& node, const Node& owner, const std:
     scale->fail_key(fmt::format("cannot be combined with '{}'", unit.node().key), "one of them");
   std::optional<LightShape> shape;
   if (is_light) {
-    const Node* const mm = find_member(document.root, "mm_per_unit");
-    const double mm_per_unit =
-        mm != nullptr ? Value(document, *mm, "mm_per_unit", key_info("scene", "mm_per_unit")).number() : 1;
     shape.emplace(LightShape{section,
                              ObjectReader(Value(document, owner, path, key_info("scene", "lights")), section),
-                             mm_per_unit * mm_per_unit});
+                             document.mm_per_unit * document.mm_per_unit});
   }
   const double luminance = luminance_of(unit, is_light ? node.key : "radiance", shape ? &*shape : nullptr);
   if (is_spectrum(node)) {

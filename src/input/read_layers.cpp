@@ -44,7 +44,7 @@ PhysicalMedium coefficients_of(const Medium& medium) {
 }
 
 double mean_of(const Texture& texture) {
-  return std::max(0., texture.file->mean()[texture.channel] * texture.scale.x);
+  return std::max(0., texture.source->mean()[texture.channel] * texture.scale.x);
 }
 
 void read_thickness(const Value& value, double mm_per_unit, MediumLayer& layer) {

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <initializer_list>
+#include <memory>
+#include <string_view>
 #include <utility>
 
+#include "image/solid_noise.h"
 #include "image/texture_file.h"
 #include "input/readers.h"
 #include "opaline/error.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 namespace {
@@ -31,14 +36,14 @@ void check_channels(const Value& file, const std::optional<Value>& channel, cons
   std::string missing, there;
   for (std::size_t c = 0; c < names.size(); ++c) {
     const bool is_taken = part == TexturePart::number ? c == texture.channel : c < 3;
-    const bool is_there = texture.file->has_channel(c);
+    const bool is_there = texture.source->has_channel(c);
     if (is_taken && !is_there && names[c] != 'a') missing += names[c];
     if (is_there) there += (there.empty() ? "" : ", ") + std::string(1, names[c]);
   }
   if (missing.empty()) return;
   const std::string expected = "a channel of the image: " + there;
   if (part == TexturePart::number && channel)
-    channel->fail("is not in " + printable(texture.file->path()), expected);
+    channel->fail("is not in " + printable(texture.source->path()), expected);
   file.fail("refers to an image without the channel " + missing.substr(0, 1),
             part == TexturePart::number ? "\"channel\": " + expected
                                         : "the channels R, G and B, or Y, or one alone");
@@ -58,6 +63,44 @@ void mix_channels(const Value& value, TexturePart part, Texture& texture) {
   }
 }
 
+constexpr std::array<std::string_view, 2> kOrigins{"texture", "noise"};
+
+std::shared_ptr<const TextureSource> read_image(const ObjectReader& reader, const Value& file,
+                                                TexturePart part) {
+  try {
+    const std::string path = file.file_path();
+    return TextureFile::open(path, space_of(reader, path, part),
+                             part == TexturePart::color ? TextureContent::colors : TextureContent::data);
+  } catch (const Error& failure) {
+    throw told_at(file.place(), failure);
+  }
+}
+
+std::shared_ptr<const TextureSource> read_noise(const ObjectReader& reader, const Value& pattern) {
+  NoiseParameters noise;
+  noise.pattern = static_cast<NoisePattern>(pattern.choice());
+  noise.size = reader.need("size").length(reader.mm_per_unit());
+  if (const auto octaves = reader.find("octaves")) noise.octaves = int(octaves->whole_number());
+  if (const auto low = reader.find("low")) noise.low = low->number_or_triple();
+  if (const auto high = reader.find("high")) noise.high = high->number_or_triple();
+  if (const auto seed = reader.find("seed")) noise.seed = seed->whole_number();
+  return SolidNoise::shared(noise);
+}
+
+/// error at a key without an effect
+void check_keys(const ObjectReader& reader, bool is_image) {
+  const auto refuse = [&](std::initializer_list<std::string_view> keys, const std::string& why) {
+    for (const std::string_view key : keys)
+      if (const auto found = reader.find(key)) found->fail_key("has no effect " + why);
+  };
+  if (is_image)
+    refuse({"size", "octaves", "low", "high", "seed"}, "without 'noise'");
+  else
+    refuse({"triplanar", "color_space"}, "with 'noise'");
+  if (!is_image || reader.find("triplanar"))
+    refuse({"uv_scale", "uv_rotation", "uv_offset"}, is_image ? "with 'triplanar'" : "with 'noise'");
+}
+
 Texture read_texture(const Value& value, TexturePart part);
 
 /// Colours are normalised by their mean; constant ones have no effect.
@@ -69,7 +112,7 @@ void read_details(const Value& details, const Value& owner, TexturePart part, Te
     Texture detail = read_texture(one, part);
     if (!detail.details.empty()) one.fail("has details of its own", "a list of one level");
     if (!is_normal) {
-      if (detail.file->constant()) continue;
+      if (detail.source->constant()) continue;
       take_mean(detail);
     }
     texture.details.push_back(std::move(detail));
@@ -80,22 +123,19 @@ Texture read_texture(const Value& value, TexturePart part) {
   const ObjectReader reader(value, "texture");
   Texture texture;
   texture.place = value.place();
-  const Value file = reader.need("texture");
-  try {
-    const std::string path = file.file_path();
-    texture.file =
-        TextureFile::open(path, space_of(reader, path, part),
-                          part == TexturePart::color ? TextureContent::colors : TextureContent::data);
-  } catch (const Error& failure) {
-    throw told_at(file.place(), failure);
-  }
+  const Value origin = reader.need(reader.exactly_one_of(kOrigins));
+  const bool is_image = origin.node().key == kOrigins[0];
+  texture.source = is_image ? read_image(reader, origin, part) : read_noise(reader, origin);
+  check_keys(reader, is_image);
+  if (const auto width = reader.find("triplanar"))
+    texture.triplanar_width = width->length(value.mm_per_unit());
   if (const auto scale = reader.find("scale")) texture.scale = scale->number_or_triple();
   if (value.wavelengths() != nullptr) mix_channels(value, part, texture);
   const std::optional<Value> channel = reader.find("channel");
   if (channel && part != TexturePart::number)
     value.fail(part == TexturePart::color ? "is a colour" : "requires three numbers", "no 'channel'");
   if (channel) texture.channel = channel->choice();
-  check_channels(file, channel, texture, part);
+  check_channels(origin, channel, texture, part);
   if (const auto uv_scale = reader.find("uv_scale")) texture.uv_scale = read_pair(*uv_scale);
   if (const auto rotation = reader.find("uv_rotation")) texture.uv_rotation = rotation->number();
   if (const auto offset = reader.find("uv_offset")) texture.uv_offset = read_pair(*offset);
@@ -109,7 +149,7 @@ double checked(const Value& value, const Texture& texture, double number) {
   const Range& range = value.info().range;
   if (!(number >= range.low && number <= range.high))
     value.fail(fmt::format("is out of range: {:.4g} at every texel of {}, with its scale", number,
-                           texture.file->path()),
+                           texture.source->path()),
                fmt::format("values from {:g} to {:g}", range.low, range.high));
   return number;
 }
@@ -120,7 +160,7 @@ void read_textured(const Value& value, double& number, std::optional<Texture>& t
   number = is_texture(value) ? 1 : value.number();
   if (!is_texture(value)) return;
   texture = read_texture(value, TexturePart::number);
-  const std::optional<Texel>& constant = texture->file->constant();
+  const std::optional<Texel>& constant = texture->source->constant();
   if (!constant) return;
   number = checked(value, *texture, (*constant)[texture->channel] * texture->scale.x);
   texture.reset();
@@ -131,7 +171,7 @@ void read_textured(const Value& value, Vec3d& triple, std::optional<Texture>& te
   triple = is_texture(value) ? Vec3d(1) : is_color ? value.color() : value.number_or_triple();
   if (!is_texture(value)) return;
   texture = read_texture(value, is_color ? TexturePart::color : TexturePart::triple);
-  const std::optional<Texel>& constant = texture->file->constant();
+  const std::optional<Texel>& constant = texture->source->constant();
   if (!constant || !texture->details.empty()) return;
   const Rgb color = at_wavelengths(*texture, {(*constant)[0], (*constant)[1], (*constant)[2]});
   for (std::size_t c = 0; c < 3; ++c) triple[c] = checked(value, *texture, color[c] * texture->scale[c]);
@@ -139,7 +179,7 @@ void read_textured(const Value& value, Vec3d& triple, std::optional<Texture>& te
 }
 
 Rgb take_mean(Texture& texture) {
-  const Texel texel = texture.file->mean();
+  const Texel texel = texture.source->mean();
   const Rgb mean = at_wavelengths(texture, {texel[0], texel[1], texel[2]});
   Rgb taken;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -151,12 +191,15 @@ Rgb take_mean(Texture& texture) {
 }
 
 Texture read_normal_map(const Value& value) {
-  return read_texture(value, TexturePart::triple);
+  Texture map = read_texture(value, TexturePart::triple);
+  if (is_solid(map))
+    value.fail("needs an image mapped by UVs", "a 'bump_map', or an image without 'triplanar'");
+  return map;
 }
 
 std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit) {
   Texture texture = read_texture(value, TexturePart::number);
-  if (texture.file->constant()) return {};
+  if (texture.source->constant()) return {};
   texture.scale = texture.scale * mm_per_unit;
   return texture;
 }

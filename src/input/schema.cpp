@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "image/solid_noise.h"
 #include "input/key_rows.h"
 #include "input/settings_table.h"
 #include "lights/all_lights.h"
@@ -241,6 +242,21 @@ std::vector<KeyInfo> texture_rows() {
           "EXR, HDR, PNG, JPEG or TIFF, relative to the scene file's folder. `<UDIM>` in the name stands for "
           "1001 + column + 10 x row. `asset.glb#image/0` is an image of an asset. Colours are converted from "
           "the chromaticities of an EXR to Rec.709; premultiplied colours are divided by alpha"),
+      row("texture", "noise", choice, "", kFiniteNumber, "",
+          "a pattern in the space of the shape in place of an image, without UVs: `\"clouds\"`, or "
+          "`\"veins\"` on "
+          "thin sheets",
+          kNoisePatternNames),
+      row("texture", "size", length, "", kFiniteNumber, "", "of the largest features of `noise`"),
+      row("texture", "octaves", whole_number, "", {1, 12}, "5",
+          "number of sizes of `noise`, each half of the one before"),
+      row("texture", "low", number_or_triple, "", kNonNegative, "0",
+          "one end of the values of `noise`; three numbers are linear red, green and blue"),
+      row("texture", "high", number_or_triple, "", kNonNegative, "1", "the other end: that of the veins"),
+      row("texture", "seed", whole_number, "", {0, 1e9}, "0", "another pattern of `noise` for each number"),
+      row("texture", "triplanar", length, "", kFiniteNumber, "none",
+          "width of the image, projected along the three axes of the shape and blended by the normal, "
+          "without UVs"),
       row("texture", "color_space", choice, "", kFiniteNumber, "`\"automatic\"`",
           "`\"srgb\"` or `\"linear\"`; automatic: linear for float files and non-colour values, otherwise "
           "sRGB",

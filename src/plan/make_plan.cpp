@@ -184,18 +184,20 @@ std::vector<const EnvironmentPicture*> environments_of(const Scene& scene) {
 
 /// Memory of environment maps, and of all textures at full size; a camera may load less.
 std::size_t picture_bytes(const Scene& scene, const std::vector<const EnvironmentPicture*>& environments) {
-  std::set<const TextureFile*> files;
+  std::set<const TextureSource*> sources;
   for (const Shape& shape : scene.shapes)
-    for (const Texture* texture : textures_of(scene, shape)) files.insert(texture->file.get());
+    for (const Texture* texture : textures_of(scene, shape)) sources.insert(texture->source.get());
   // Loaded as well if all textures turn out constant, or if no shape uses them.
   std::size_t decoded = 0, cached = 0, held = picture_module_is_loaded() ? kBytesOfPictureReader : 0;
   for (const EnvironmentPicture* environment : environments) held += environment->memory();
-  for (const TextureFile* file : files) {
-    const TextureMemory memory = file->memory();
+  bool has_images = false;
+  for (const TextureSource* source : sources) {
+    const TextureMemory memory = source->memory();
     decoded = std::max(decoded, memory.decoded);
     cached += memory.cached;
+    has_images = has_images || source->image() != nullptr;
   }
-  return held + decoded + (files.empty() ? 0 : std::min(cached, TextureFile::cache_limit()));
+  return held + decoded + (!has_images ? 0 : std::min(cached, TextureFile::cache_limit()));
 }
 
 /// Warns of scenes far larger than their smallest shape, whose ray offsets become visible.

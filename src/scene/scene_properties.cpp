@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scene/texture_source.h"
+
 namespace opaline {
 namespace {
 
@@ -48,8 +50,13 @@ std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) 
   return textures;
 }
 
+bool is_solid(const Texture& texture) {
+  return texture.triplanar_width > 0 || texture.source->noise() != nullptr;
+}
+
 bool needs_uvs(const Scene& scene, const Shape& shape) {
-  return !textures_of(scene, shape).empty();
+  return std::ranges::any_of(textures_of(scene, shape),
+                             [](const Texture* texture) { return !is_solid(*texture); });
 }
 
 const Grain* grain_of(const Scene& scene, const Shape& shape) {

@@ -45,6 +45,8 @@ bool shapes_exchange_light(const Scene& scene);
 int bounces_of(const Scene& scene);
 /// Textures of a shape and of its medium.
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
+/// True if a texture's values depend on the position in the space of the shape, instead of UVs.
+bool is_solid(const Texture& texture);
 /// True if a shape's mesh needs UVs.
 bool needs_uvs(const Scene& scene, const Shape& shape);
 /// Anisotropy of a shape's rough boundary; null for smooth or isotropic ones.

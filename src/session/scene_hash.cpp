@@ -72,7 +72,7 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
     if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
       if (seen.insert(mesh->path).second) add(contents_of(shape, mesh->path));
   for (const Shape& shape : scene.shapes)
-    for (const Texture* texture : textures_of(scene, shape)) add(std::to_string(texture->file->hash()));
+    for (const Texture* texture : textures_of(scene, shape)) add(std::to_string(texture->source->hash()));
   for (const Light& light : scene.lights)
     if (const auto* environment = std::get_if<EnvironmentLight>(&light.source))
       add(std::to_string(environment->picture->hash()));

@@ -120,6 +120,7 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
     add_fuzz(key, shape.fuzz, true);
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
     if (uvs_of(input.scene, shape) != MeshUvs::unread) add_coordinates(key, input.world.meshes[i]);
+    add_solid_space(key, input.scene, i);
     if (uses_vertex_colors(input.scene, shape, input.world.meshes[i]))
       add_vertex_colors(key.add(shape.has_reflectance), input.scene, input.world.meshes[i]);
   }

@@ -38,8 +38,9 @@ struct Document {
   std::vector<std::string> overrides;
   Node root;
   int frame = 1;
-  std::vector<std::size_t> line_starts = {};      ///< line starts of the text, see line_starts_of
-  std::vector<std::string> warnings = {};         ///< one line each
+  std::vector<std::size_t> line_starts = {};  ///< line starts of the text, see line_starts_of
+  std::vector<std::string> warnings = {};     ///< one line each
+  double mm_per_unit = 1;
   const ThreeWavelengths* wavelengths = nullptr;  ///< wavelengths of the colours; null: red, green and blue
 };
 

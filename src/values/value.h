@@ -36,6 +36,9 @@ class Value {
   /// Wavelengths of its colours; null: red, green and blue.
   const ThreeWavelengths* wavelengths() const { return document_->wavelengths; }
 
+  /// Scale of the scene.
+  double mm_per_unit() const { return document_->mm_per_unit; }
+
   /// A number in the range of its row. Each getter below throws Error{bad_input} at the value.
   double number() const { return number(info_->range); }
   /// A number in this range.

@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kPause{100};
 
 }  // namespace
 
-FileWatch::FileWatch(boost::asio::io_context& io, std::function<void()> changed)
+FileWatch::FileWatch(boost::asio::io_context& io, Changed changed)
     : events_(io), timer_(io), changed_(std::move(changed)) {
   const int descriptor = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
   if (descriptor < 0) return;  // too many on this machine
@@ -26,42 +26,44 @@ FileWatch::FileWatch(boost::asio::io_context& io, std::function<void()> changed)
 
 void FileWatch::watch(const std::vector<std::string>& files) {
   if (!events_.is_open()) return;
-  std::map<int, std::set<std::string>> names;
+  std::map<int, std::map<std::string, std::string>> paths;
   for (const std::string& file : files) {
     const std::filesystem::path path = std::filesystem::absolute(file);
     const int watch = ::inotify_add_watch(events_.native_handle(), path.parent_path().c_str(),
                                           IN_CLOSE_WRITE | IN_MOVED_TO);
-    if (watch >= 0) names[watch].insert(path.filename().string());
+    if (watch >= 0) paths[watch][path.filename().string()] = file;
   }
-  for (const auto& [watch, old] : names_)
-    if (!names.contains(watch)) ::inotify_rm_watch(events_.native_handle(), watch);
-  names_ = std::move(names);
+  for (const auto& [watch, old] : paths_)
+    if (!paths.contains(watch)) ::inotify_rm_watch(events_.native_handle(), watch);
+  paths_ = std::move(paths);
 }
 
 void FileWatch::read() {
   events_.async_read_some(boost::asio::buffer(bytes_),
                           [this](boost::system::error_code error, std::size_t bytes) {
                             if (error) return;
-                            if (is_watched(bytes)) {
+                            note(bytes);
+                            if (!news_.empty()) {
                               timer_.expires_after(kPause);
                               timer_.async_wait([this](boost::system::error_code stopped) {
-                                if (!stopped) changed_();
+                                if (!stopped) changed_(std::exchange(news_, {}));
                               });
                             }
                             read();
                           });
 }
 
-bool FileWatch::is_watched(std::size_t bytes) const {
+void FileWatch::note(std::size_t bytes) {
   for (std::size_t at = 0; at + sizeof(inotify_event) <= bytes;) {
     inotify_event event;
     std::memcpy(&event, bytes_.data() + at, sizeof event);
-    const char* const name = bytes_.data() + at + sizeof event;
-    const auto known = names_.find(event.wd);
-    if (known != names_.end() && event.len > 0 && known->second.contains(name)) return true;
+    const auto folder = paths_.find(event.wd);
+    if (folder != paths_.end() && event.len > 0)
+      if (const auto path = folder->second.find(bytes_.data() + at + sizeof event);
+          path != folder->second.end())
+        news_.insert(path->second);
     at += sizeof event + event.len;
   }
-  return false;
 }
 
 }  // namespace opaline

@@ -17,20 +17,22 @@ namespace opaline {
 /// Calls back after files are written or replaced, once for changes in quick succession.
 class FileWatch {
  public:
-  /// changed: on the thread of io
-  FileWatch(boost::asio::io_context& io, std::function<void()> changed);
+  using Changed = std::function<void(const std::set<std::string>& files)>;
+  /// changed: on the thread of io, with the paths given to `watch`
+  FileWatch(boost::asio::io_context& io, Changed changed);
 
   /// Replaces the watched files. Folders that cannot be watched are skipped.
   void watch(const std::vector<std::string>& files);
 
  private:
   void read();
-  bool is_watched(std::size_t bytes) const;
+  void note(std::size_t bytes);
 
   boost::asio::posix::stream_descriptor events_;
   boost::asio::steady_timer timer_;
-  std::function<void()> changed_;
-  std::map<int, std::set<std::string>> names_;  // by the watch of their folder
+  Changed changed_;
+  std::map<int, std::map<std::string, std::string>> paths_;  // by the watch of their folder, and by name
+  std::set<std::string> news_;
   std::array<char, 4096> bytes_{};
 };
 

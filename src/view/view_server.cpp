@@ -75,7 +75,7 @@ struct ViewServer::State {
   void after_edit(bool has_new_files = false);
   std::string by_scene_camera() const;
   void open(PageConnection& page, const OpenFiles& dropped);
-  void reload();
+  void reload(const std::set<std::string>& files);
   void pick(PageConnection& page, const Pick& place);
   void save(PageConnection& page, const std::string& name);
   void render_file(PageConnection& page, const std::string& name);
@@ -112,7 +112,7 @@ struct ViewServer::State {
   std::unique_ptr<ViewBackground> background;
   BackgroundWork asked;  ///< requested background work
   PageConnection* picking = nullptr;
-  FileWatch watch{io, [this] { reload(); }};
+  FileWatch watch{io, [this](const std::set<std::string>& files) { reload(files); }};
 };
 
 ViewServer::State::State(SceneEdits scene_edits, const ViewOptions& options, ViewHooks view_hooks)
@@ -313,14 +313,14 @@ void ViewServer::State::open(PageConnection& page, const OpenFiles& files) {
   page.answer(told_text(true, "opened " + path));
 }
 
-/// A file of the scene has changed on the disk.
-void ViewServer::State::reload() {
+/// Files of the scene have changed on the disk. Stages are reused if none of them is a mesh.
+void ViewServer::State::reload(const std::set<std::string>& files) {
   std::string answer;
   try {
     const std::string lost = edits.reload();
     answer = told_text(lost.empty(), "opened " + edits.file() + " again" +
                                          (lost.empty() ? "" : ", without its edits: " + lost));
-    after_edit(true);
+    after_edit(is_asset_name(edits.file()) || files != std::set{edits.file()});
   } catch (const std::exception& failure) {
     answer = told_text(false, failure.what());
   }

@@ -60,7 +60,7 @@ TEST(GltfTextures, AreFoundWhereverTheyAre) {
     const Scene scene = load_scene(folder.file("a.glb"));
     const std::optional<Texture>& texture = scene.shapes.at(0).reflectance_texture;
     ASSERT_TRUE(texture);
-    EXPECT_NEAR(left_texel(*texture->file), test::linear_of_byte(128), 2e-4);
+    EXPECT_NEAR(left_texel(*texture->source->image()), test::linear_of_byte(128), 2e-4);
     EXPECT_EQ(folder.entries(), 2u);
   }
 }
@@ -118,7 +118,7 @@ TEST(GltfTextures, BecomeTheScenes) {
   EXPECT_EQ(gloss.metalness_texture->scale.x, .75);
   EXPECT_EQ(gloss.roughness_texture.value().channel, 1u);
   EXPECT_EQ(gloss.roughness_texture->scale.x, .5);
-  EXPECT_NEAR(left_texel(*gloss.roughness_texture->file), 200 / 255., 1e-6);
+  EXPECT_NEAR(left_texel(*gloss.roughness_texture->source->image()), 200 / 255., 1e-6);
   EXPECT_EQ(opaque.normal_map.value().scale.x, 2);
 
   material["extensions"] = {
@@ -207,7 +207,8 @@ TEST(ObjTextures, AreTakenFromLibraries) {
   const Scene scene = load_scene(folder.file("a.obj"));
   ASSERT_TRUE(scene.shapes.at(0).reflectance_texture);
   EXPECT_EQ(scene.shapes[0].reflectance_texture->scale, Rgb(.8, .6, .4));
-  EXPECT_NEAR(left_texel(*scene.shapes[0].reflectance_texture->file), test::linear_of_byte(128), 2e-4);
+  EXPECT_NEAR(left_texel(*scene.shapes[0].reflectance_texture->source->image()), test::linear_of_byte(128),
+              2e-4);
   const Texture& odd = scene.shapes.at(1).reflectance_texture.value();
   EXPECT_EQ(odd.uv_scale, (std::array<double, 2>{2, 3}));
   EXPECT_EQ(odd.uv_offset,

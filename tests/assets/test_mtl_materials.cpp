@@ -219,7 +219,7 @@ TEST(MtlMaterials, CommentsAndContinuedLinesAreRead) {
     EXPECT_EQ(scene.warnings,
               std::vector{folder.file("a.mtl") +
                           ":4: the statement 'xyzzy' of material 'red' is unknown and ignored"});
-    return scene.shapes.at(0).reflectance_texture.value().file->path();
+    return scene.shapes.at(0).reflectance_texture.value().source->path();
   };
   EXPECT_EQ(texture_name(), folder.file("p.png"));
   test::put_png(folder.file("q.png"), 4, 4, color);

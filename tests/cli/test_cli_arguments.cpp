@@ -145,7 +145,7 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"render", scene, "-o", out, "--reindex"}, "unknown option '--reindex'; see"},
       {{"render", scene, "-o", out, "--preset", "marble"},
        "unknown option '--preset' (did you mean '--set media.NAME.preset=VALUE'?)"},
-      {{"info", scene, "--medium=wax"},
+      {{"info", scene, "--medium=basalt"},
        "is not a medium of this scene (expected one of marble, or with --medium a preset: apple, "},
       {{"info", scene, "--size", "5GB"}, "a length such as 2mm"},
       {{"view", scene, "--ior", "1.4"},

@@ -61,6 +61,10 @@ std::vector<Change> changes() {
   const auto texture = [](const std::string& rest) {
     return R"(shapes.floor.reflectance={"texture": "cells.png", )" + rest + "}";
   };
+  const auto noise = [](const std::string& pattern, const std::string& rest) {
+    return R"(shapes.floor.reflectance={"noise": ")" + pattern + "\", " + rest + "}";
+  };
+  const Overrides clouds{noise("clouds", R"("size": 4)")};
   const Overrides tissue{R"(media.stone.sigma_a={"tissue": {"melanin": 0.01, "blood": 0.01}})"};
   const Overrides spectrum{R"(media.stone.sigma_a={"nm": [400, 700], "values": [0.1, 0.01]})"};
   const Overrides volume{"settings.method=volume", "settings.bounces=0", "settings.samples=30"},
@@ -288,6 +292,13 @@ std::vector<Change> changes() {
        "settings.cell_size=2.5",
        {cells[0], cells[1], cells[2], "media.wax.texture_mix=medium",
         R"(media.wax.subsurface_color={"texture": "cells.png"})"}},
+      {"texture.noise", noise("veins", R"("size": 4)"), clouds},
+      {"texture.size", noise("clouds", R"("size": 3)"), clouds},
+      {"texture.octaves", noise("clouds", R"("size": 4, "octaves": 2)"), clouds},
+      {"texture.low", noise("clouds", R"("size": 4, "low": 0.3)"), clouds},
+      {"texture.high", noise("clouds", R"("size": 4, "high": 0.5)"), clouds},
+      {"texture.seed", noise("clouds", R"("size": 4, "seed": 2)"), clouds},
+      {"texture.triplanar", texture(R"("triplanar": 9)")},
       {"texture.detail", texture(R"("detail": [{"texture": "other.png"}])")},
       {"spectrum.nm", R"(media.stone.sigma_a={"nm": [450, 700], "values": [0.1, 0.01]})", spectrum},
       {"spectrum.values", R"(media.stone.sigma_a={"nm": [400, 700], "values": [0.1, 0.02]})", spectrum},

@@ -24,8 +24,7 @@ constexpr std::uint64_t kWalksVersion = 3;
 /// Keys of the sums, one for each of their sources: the samples (or their tint), the media, all meshes, the
 /// position and size of the source's light; its colour only where sources have several lights.
 std::vector<StageKey> walk_keys(const BodyStages& stages, const VolumeInput& walks, const StageKey& tint) {
-  const StageKey medium_inside = medium_key(stages.input.scene.media[stages.body.plan.medium],
-                                            stages.input.world, stages.body.plan.meshes);
+  const StageKey medium_inside = medium_key(stages.input.scene, stages.input.world, stages.body.plan.meshes);
   KeyBuilder common("random walks", kWalksVersion);
   common.add(embree_version()).add(std::string(widest_instructions()));
   common.add(tint == StageKey{} ? stages.keys.samples_key : tint);

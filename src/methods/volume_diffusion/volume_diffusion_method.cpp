@@ -64,8 +64,7 @@ constexpr std::uint64_t kCellsVersion = 7, kDiffusionVersion = 10;
 
 StageKey cells_key(const BodyStages& stages) {
   const Body& body = stages.body;
-  const StageKey medium_inside =
-      medium_key(stages.input.scene.media[body.plan.medium], stages.input.world, body.plan.meshes);
+  const StageKey medium_inside = medium_key(stages.input.scene, stages.input.world, body.plan.meshes);
   KeyBuilder key("diffusion cells", kCellsVersion);
   key.add(settings_in_key(KeyedStage::cells, stages.input.scene));
   key.add(stages.keys.samples_key).add(body.profile.eta).add(body.plan.cell);

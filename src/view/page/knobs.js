@@ -28,8 +28,8 @@ const isObject = (value) => value !== null && typeof value === "object" && !Arra
 const objectsOf = (owner) => Object.keys(owner).filter((key) => isObject(owner[key]));
 const kPhotometric = ["lm", "cd", "lx", "nit"];
 function textOf(value) {
-  const {texture, spectrum, illuminant, blackbody} = value, unit = kPhotometric.find((key) => key in value);
-  const colour = texture ?? spectrum ?? illuminant ?? (blackbody ? `black body, ${blackbody} K` : unit ? "" : "spectrum");
+  const {texture, noise, spectrum, illuminant, blackbody} = value, unit = kPhotometric.find((key) => key in value);
+  const colour = texture ?? noise ?? spectrum ?? illuminant ?? (blackbody ? `black body, ${blackbody} K` : unit ? "" : "spectrum");
   return [unit ? `${value[unit]} ${unit}` : "", colour].filter(Boolean).join(", ");
 }
 
