@@ -107,7 +107,7 @@ class OPALINE_PT_medium(OpalinePanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.prop(settings, "medium")
         if settings.medium:
-            layout.label(text="A measured medium, with the roughness of the Principled BSDF")
+            layout.label(text="A preset, with the roughness of the Principled BSDF")
         else:
             layout.prop(settings, "texture_mix")
             layout.label(text="Subsurface of the Principled BSDF, with Cycles' radius")

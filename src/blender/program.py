@@ -13,7 +13,8 @@ import time
 STAGES = ("loading", "choosing", "rays", "sampling", "irradiance", "random walks", "diffusion", "bounces", "shading",
           "light groups", "mattes", "writing")
 PRESETS = ("apple", "chicken1", "chicken2", "cream", "ketchup", "marble", "potato", "skimmilk", "skin1", "skin2",
-           "spectralon", "wholemilk")
+           "spectralon", "wholemilk", "alabaster", "candle", "grape", "honey", "jade", "leaf", "milk_glass", "salmon",
+           "skin_dark", "skin_fair", "snow", "soap", "wax")
 POLL_SECONDS = 0.05
 PATIENCE_SECONDS = 5  # between the request to stop and the kill
 STDERR_LINES = 5
@@ -156,7 +157,7 @@ def run(words, is_cancelled, on_progress, on_warning):
 
 
 def presets(path):
-    """Names of the measured media, from the program's JSON Schema."""
+    """Names of the presets, from the program's JSON Schema."""
     try:
         text = subprocess.run([path, "schema"], capture_output=True, text=True, check=True, timeout=10).stdout
         choices = json.loads(text)["definitions"]["medium"]["properties"]["preset"]["anyOf"]

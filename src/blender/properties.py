@@ -106,7 +106,7 @@ class OpalineLayerSettings(bpy.types.PropertyGroup):
 class OpalineMaterialSettings(bpy.types.PropertyGroup):
     """A measured medium in place of the nodes."""
 
-    medium: StringProperty(name="Measured", search=search_presets, description="Measured medium; empty: from the nodes")
+    medium: StringProperty(name="Preset", search=search_presets, description="Preset; empty: from the nodes")
     texture_mix: EnumProperty(name="Texture", items=MIXES, default="split",
                               description="Application of a textured colour to a translucent surface")
 
