@@ -35,12 +35,13 @@ export class Connection {
     const message = JSON.parse(data);
     if (message.is === "scene") {
       if (this.isNew) {
-        if (message.revision === 1 && this.frame !== undefined && this.frame !== message.frame) this.toFrame = this.frame;
-        if (message.revision === 1) this.toLook = this.lastLook;
+        const isRestarted = message.revision === 1 && message.file === this.file;
+        if (isRestarted && this.frame !== undefined && this.frame !== message.frame) this.toFrame = this.frame;
+        if (isRestarted) this.toLook = this.lastLook;
         this.isNew = false;
         this.wait = kFirstWait;
         this.handlers.found();
-        if (message.revision === 1 && this.edits.length) {
+        if (isRestarted && this.edits.length) {
           this.send({do: "restore", edits: this.edits});
           this.edits = [];  // sent once: a server may refuse them
           return;
@@ -50,6 +51,7 @@ export class Connection {
       if (this.toLook) this.look(this.toLook);
       this.toFrame = this.toLook = undefined;
       this.edits = message.edits;
+      this.file = message.file;
       this.frame = message.frame;
       this.lastLook = message.look;
     }

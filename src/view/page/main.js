@@ -145,9 +145,21 @@ function turnLights(from, angle, stroke) {
   if (Object.keys(values).length) set(values, stroke);
 }
 
+// Two fingers pan by their middle, and dolly by their distance.
+const fingers = new Map();
+function pinch(now, height, stroke) {
+  const old = fingers.get(now.pointerId), [, other] = [...fingers].find(([id]) => id !== now.pointerId);
+  const apart = ([x, y]) => Math.max(1, Math.hypot(x - other[0], y - other[1]));
+  const next = [now.clientX, now.clientY];
+  fingers.set(now.pointerId, next);
+  turn((camera) => pan(camera, (next[0] - old[0]) / (2 * height), (next[1] - old[1]) / (2 * height)));
+  approach(apart(old) / apart(next), stroke);
+}
+
 function dragCamera(event) {
   if (event.button > 1 || !state.camera) return;
   event.preventDefault();
+  if (event.pointerType === "touch") fingers.set(event.pointerId, [event.clientX, event.clientY]);
   const canvas = one("picture"), stroke = newStroke(), height = canvas.getBoundingClientRect().height;
   canvas.focus();
   canvas.setPointerCapture(event.pointerId);
@@ -155,6 +167,11 @@ function dragCamera(event) {
   let last = [event.clientX, event.clientY];
   const start = event.clientX, lights = state.scene.lights || [];
   const move = (now) => {
+    if (now.pointerId !== event.pointerId) return;
+    if (fingers.size === 2) {
+      last = [now.clientX, now.clientY];
+      return pinch(now, height, stroke);
+    }
     if (event.altKey) return turnLights(lights, -kTurn * (now.clientX - start) / height, stroke);
     const x = (now.clientX - last[0]) / height, y = (now.clientY - last[1]) / height;
     last = [now.clientX, now.clientY];
@@ -162,6 +179,8 @@ function dragCamera(event) {
     turn((camera) => event.shiftKey ? pan(camera, x, y) : orbit(camera, -kTurn * x, -kTurn * y));
   };
   const end = (now) => {
+    if (now.pointerId !== event.pointerId) return;
+    fingers.delete(event.pointerId);
     isDragging = false;
     if (now.type === "pointerup" && Math.hypot(now.clientX - start, now.clientY - event.clientY) < kClick) pick(now);
     canvas.removeEventListener("pointermove", move);
@@ -391,6 +410,7 @@ one("files").onchange = () => {
   one("files").value = "";
 };
 for (const word of ["undo", "redo", "reset"]) one(word).onclick = () => step({do: word});
+one("show-keys").onclick = () => one("keys").showModal();
 one("keep-look").onclick = () => step({do: "keep_look"});
 one("look-back").onclick = () => step({do: "look_back"});
 one("copy").onclick = copyCommand;
@@ -419,6 +439,7 @@ canvas.addEventListener("pointermove", (event) => {
   inspect();
 });
 addEventListener("keydown", (event) => {
+  if (event.key === "?" && !event.target.matches("input")) one("keys").showModal();
   if (!event.ctrlKey || event.key.toLowerCase() !== "z" || event.target.matches("input[type=number], #name")) return;
   event.preventDefault();
   step({do: event.shiftKey ? "redo" : "undo"});
