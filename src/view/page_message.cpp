@@ -2,6 +2,7 @@
 #include "view/page_message.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "input/schema.h"
@@ -91,6 +92,15 @@ LookFrom read_look(const MessageReader& reader) {
   return {point("position"), point("look_at")};
 }
 
+ChangeLights read_lights(const MessageReader& reader) {
+  constexpr std::array<std::string_view, 3> kChanges{"add", "copy", "remove"};
+  const auto change = std::ranges::find(kChanges, reader.text("change"));
+  if (change == kChanges.end())
+    reader.fail(reader.need("change", Node::Kind::string, "a string"), "is not a valid choice",
+                "one of " + join(kChanges));
+  return {ChangeLights::Change(change - kChanges.begin()), reader.index("index")};
+}
+
 struct Kind {
   std::string_view name;
   std::vector<std::string_view> keys;
@@ -123,6 +133,7 @@ const std::vector<Kind>& kinds() {
        [](Reader r) -> PageMessage { return FrameShown{std::uint32_t(r.whole("frame"))}; }},
       {"look", {"do", "position", "look_at"}, [](Reader r) -> PageMessage { return read_look(r); }},
       {"look_back", {"do"}, [](Reader) -> PageMessage { return LookBack{}; }},
+      {"lights", {"do", "change", "index"}, [](Reader r) -> PageMessage { return read_lights(r); }},
       {"pick",
        {"do", "x", "y"},
        [](Reader r) -> PageMessage {

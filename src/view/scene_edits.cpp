@@ -2,7 +2,9 @@
 #include "view/scene_edits.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <numeric>
 #include <sstream>
 #include <utility>
@@ -90,6 +92,35 @@ bool is_within(const std::string& override, const std::string& path) {
   return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
 }
 
+/// A name of no light; numbered if necessary.
+std::string unused_name(const Json& lights, const std::string& name) {
+  const auto is_used = [&](const std::string& tried) {
+    return std::any_of(lights.begin(), lights.end() - 1,
+                       [&](const Json& light) { return light.value("name", "") == tried; });
+  };
+  std::string unused = name;
+  for (int number = 2; is_used(unused); ++number) unused = name + "-" + std::to_string(number);
+  return unused;
+}
+
+/// A sphere to the upper left of the camera, as far from its point of interest as the camera. There, the irradiance is
+/// about 3.
+Json new_light(const Scene& scene) {
+  constexpr double kIrradiance = 3, kAngle = .1;  // kAngle: radius over distance
+  const Camera& camera = scene.camera;
+  const Vec3d back = camera.position - camera.look_at, right = normalized(cross(camera.up, back));
+  const double distance = length(back);
+  const Vec3d up = cross(normalized(back), right), towards = normalized(back / distance + up - right);
+  const Vec3d center = (camera.look_at + towards * distance) / scene.mm_per_unit;
+  const double radiance = kIrradiance / (std::numbers::pi * kAngle * kAngle);
+  return {{"name", "light"},
+          {"type", "sphere"},
+          {"center", {center.x, center.y, center.z}},
+          {"radius", kAngle * distance / scene.mm_per_unit},
+          {"radiance", std::round(radiance)},
+          {"visible", false}};
+}
+
 /// Removes edits of a shape's opaque surface, replaced by a medium, and vice versa.
 void drop_replaced_surface(std::vector<std::string>& edits, const std::string& path) {
   const std::size_t dot = path.rfind('.');
@@ -124,7 +155,7 @@ SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given, 
 
 /// Rejects edits opening files: by their key, or by an object with one, in any spelling.
 void SceneEdits::check_opens_nothing(const std::string& edit) const {
-  if (std::ranges::find(lit_by_, edit) != lit_by_.end()) return;
+  if (std::ranges::find(with_files_, edit) != with_files_.end()) return;
   const std::size_t end = edit.find('=');
   const std::string path = '.' + edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
   const bool opens = std::ranges::any_of(file_keys(), [&](std::string_view key) {
@@ -237,7 +268,7 @@ void SceneEdits::open(const std::string& file) {
 std::string SceneEdits::reload() {
   SceneEdits opened(file_, given_, given_frames_);
   std::string lost;
-  opened.lit_by_ = lit_by_;
+  opened.with_files_ = with_files_;
   try {
     if (std::ranges::find(opened.frames_, frame_) != opened.frames_.end()) opened.go_to_frame(frame_);
     opened.revision_ = 1;
@@ -262,9 +293,30 @@ void SceneEdits::light_by(const std::string& picture) {
   for (const std::string& edit : environment_overrides(picture)) {
     const std::size_t end = edit.find('=');
     change.values.push_back({edit.substr(0, end), edit.substr(end + 1)});
-    lit_by_.push_back(edit);
+    with_files_.push_back(edit);
   }
   set(change);
+}
+
+void SceneEdits::change_lights(const ChangeLights& change) {
+  Json lights =
+      Json::parse(merged_scene(text_, file_, all_overrides(edits()))).value("lights", Json::array());
+  const auto index = std::size_t(change.index);
+  if (change.change == ChangeLights::Change::add) {
+    lights.push_back(new_light(scene_));
+  } else if (index >= lights.size()) {
+    throw bad_file(file_, "there is no light " + std::to_string(index),
+                   std::to_string(lights.size()) + " lights");
+  } else if (change.change == ChangeLights::Change::copy) {
+    lights.push_back(lights.at(index));
+  } else {
+    lights.erase(lights.begin() + change.index);
+  }
+  if (change.change != ChangeLights::Change::remove)
+    lights.back()["name"] = unused_name(lights, lights.back().value("name", "light"));
+  const std::string value = lights.dump();
+  with_files_.push_back("lights=" + value);
+  set({{{"lights", value}}, 0});
 }
 
 void SceneEdits::go_to_frame(int frame) {

@@ -46,6 +46,10 @@ class SceneEdits {
   /// An environment map replacing all lights: an edit.
   void light_by(const std::string& picture);
 
+  /// An edit of the list of lights; keyed values keep their keys. A new light is above the camera's point of interest.
+  /// error Error{bad_input}: no light of this index
+  void change_lights(const ChangeLights& change);
+
   /// Shows another frame; not a step of undo.
   /// error as parse_scene; Error{bad_input}: none of frames()
   void go_to_frame(int frame);
@@ -95,7 +99,7 @@ class SceneEdits {
   std::string file_, text_;
   Edits placed_;  // placement of an asset's default camera and lights
   Edits given_;
-  Edits lit_by_;  // edits of light_by: may name their files
+  Edits with_files_;  // edits made here: they may name files
   std::vector<Edits> history_{Edits{}};
   std::size_t at_ = 0;
   std::uint64_t stroke_ = 0;  // stroke of the last step; 0: closed

@@ -255,6 +255,7 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
   if (const auto* look = std::get_if<LookFrom>(&message)) edits.look(*look);
   if (std::holds_alternative<LookBack>(message)) edits.look_back();
   if (std::holds_alternative<KeepLook>(message)) edits.keep_look();
+  if (const auto* lights = std::get_if<ChangeLights>(&message)) edits.change_lights(*lights);
   if (const auto* place = std::get_if<Pick>(&message)) pick(page, *place);
   if (const auto* shown = std::get_if<FrameShown>(&message)) page.shown(shown->frame);
   if (edits.revision() != before) after_edit();

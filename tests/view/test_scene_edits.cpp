@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Edits of a scene: each a step that can be taken back, and a file that can be read again.
 #include "../assets/asset_test.h"
+#include "../support/pictures.h"
+#include "../support/scenes.h"
 #include "opaline/error.h"
 #include "view_client.h"
 
@@ -164,6 +166,40 @@ TEST(SceneEdits, KeysStay) {
               parse_scene(text, "before.json", {}, frame).camera.position);
   edits.set(one("camera.position", R"({"keyed": {"2": [1, 2, 3]}})"));  // other keys are meant
   EXPECT_EQ(edits.scene().camera.position, (Vec3d{1, 2, 3}));
+}
+
+// Claim: lights are added, copied with a new name, and removed, each as one step; keys of a light and the file of an
+// environment map stay. Fails if the list is that of the shown frame, if a file of the scene is refused, or if the new
+// light misses the point of interest.
+TEST(SceneEdits, LightsAreAddedAndRemoved) {
+  const ViewFolder folder;
+  put_exr(folder.file("sky.exr"), 8, 4, [](int, int) { return std::array<double, 3>{1, 1, 1}; });
+  SceneEdits edits(folder.scene, {R"(lights.key.position={"keyed": {"1": [0, 100, 20], "9": [50, 100, 20]}})",
+                                  R"(lights.sun={"type": "environment", "name": "sun", "file": "sky.exr"})"});
+  edits.go_to_frame(5);
+  using Change = ChangeLights::Change;
+  edits.change_lights({Change::copy, 0});
+  ASSERT_EQ(edits.scene().lights.size(), 4u);
+  EXPECT_EQ(edits.scene().lights[3].name, "key-2");
+  EXPECT_EQ(std::get<PointLight>(edits.scene().lights[3].source).position, (Vec3d{25, 100, 20}));
+  edits.go_to_frame(9);
+  EXPECT_EQ(std::get<PointLight>(edits.scene().lights[3].source).position, (Vec3d{50, 100, 20}));
+  edits.change_lights({Change::remove, 0});
+  EXPECT_EQ(edits.scene().lights[2].name, "key-2");
+  edits.change_lights({Change::add});
+  ASSERT_EQ(edits.scene().lights.size(), 4u);
+  const auto& added = std::get<SphereLight>(edits.scene().lights[3].source);
+  const Camera& camera = edits.scene().camera;
+  EXPECT_NEAR(length(added.center - camera.look_at), length(camera.position - camera.look_at), 1e-9);
+  EXPECT_GT(added.center.y, camera.look_at.y);
+  EXPECT_NEAR(added.radiance.x * kPi * std::pow(added.radius / length(added.center - camera.look_at), 2), 3,
+              .02);
+  EXPECT_NO_THROW(parse_scene(edits.file_text(), folder.scene));
+  EXPECT_THROW(edits.change_lights({Change::remove, 4}), Error);
+  EXPECT_THROW(edits.change_lights({Change::copy, 1 << 30}), Error);
+  for (int i = 0; i < 3; ++i) edits.undo();
+  EXPECT_EQ(edits.scene().lights.size(), 3u);
+  EXPECT_FALSE(edits.can_undo());
 }
 
 // Claim: the file's text with edits is read as the scene with edits, keyed values stay keyed, and only in what pages

@@ -95,6 +95,11 @@ TEST(ViewHostile, BadMessagesAreAnswered) {
            R"({"do": "look", "position": 3, "look_at": [0, 8, 0]})",
            R"({"do": "restore", "edits": ["nothing"]})",
            R"({"do": "shown", "frame": "x"})",
+           R"({"do": "lights", "change": "steal", "index": 0})",
+           R"({"do": "lights", "change": "remove", "index": 3})",
+           R"({"do": "lights", "change": "remove", "index": -1})",
+           R"({"do": "pick", "x": 0.5, "y": 1})",
+           R"({"do": "open", "drop": "1", "names": [3]})",
            deep,
            "{\"do\": \"\xff\xfe\"}"}) {
     if (text.find('\xff') != std::string::npos)

@@ -177,6 +177,25 @@ TEST_F(LongViewPage, DroppedAssetsAreShown) {
   EXPECT_EQ(browser.run(tab, "document.getElementById('name').value"), "box-edited");
 }
 
+// Claim: buttons add and remove a light, whose knobs appear and vanish. Fails if the panel keeps those of before.
+TEST_F(LongViewPage, LightsComeAndGo) {
+  final_edits();
+  const auto press = [&](const std::string& text) {
+    browser.run(tab, "[...document.querySelectorAll('#panel button')].filter((b) => b.textContent === '" +
+                         text + "').pop().click()");
+    final_edits(revision + 1);
+  };
+  const std::string groups = "document.querySelectorAll('[data-group^=\"lights.\"]').length";
+  press("Add light");
+  EXPECT_TRUE(browser.comes_true(tab, groups + " === 4"));
+  press("Copy");
+  EXPECT_TRUE(browser.comes_true(tab, groups + " === 5"));
+  press("Remove");
+  press("Remove");
+  EXPECT_TRUE(browser.comes_true(tab, groups + " === 3"));
+  expect_shown(rendered(folder.scene));
+}
+
 // Claim: one finger orbits, two fingers apart approach, together they pan; the keys are listed by "?". Fails if the second
 // finger orbits, or if the first one jumps when the second is lifted.
 TEST_F(LongViewPage, FingersMoveTheCamera) {

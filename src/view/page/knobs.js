@@ -57,9 +57,9 @@ const threeOf = (value) =>
   typeof value === "string" ? fromHex(value) : Array.isArray(value) ? value : [value, value, value];
 
 export class Knobs {
-  // set(values, stroke): changes the scene; help(text): shows a line
-  constructor(root, set, help) {
-    Object.assign(this, {root, set, help, knobs: [], shape: ""});
+  // set(values, stroke): changes the scene; help(text): shows a line; step(message): asks the server for another change
+  constructor(root, set, help, step) {
+    Object.assign(this, {root, set, help, step, knobs: [], shape: ""});
   }
 
   take(schema) {
@@ -103,7 +103,9 @@ export class Knobs {
       this.root.append(details);
     };
     for (const name of Object.keys(scene.media || {})) group(`media.${name}`, `Medium ${name}`, this.mediumRows(name));
-    (scene.lights || []).forEach((light, i) => group(`lights.${i}`, `Light ${light.name || i}`, this.rowsOf(`light.${light.type}`, this.pathOf("lights", i), (s) => s.lights[i], ["type", "name"])));
+    (scene.lights || []).forEach((light, i) => group(`lights.${i}`, `Light ${light.name || i}`, this.rowsOf(`light.${light.type}`, this.pathOf("lights", i), (s) => s.lights[i], ["type", "name"]).concat(
+      this.buttons([["Copy", {do: "lights", change: "copy", index: i}], ["Remove", {do: "lights", change: "remove", index: i}]]))));
+    this.root.append(this.buttons([["Add light", {do: "lights", change: "add", index: 0}]]));
     group("scene", "Scene", ["surroundings", "backdrop", "mm_per_unit"].map((key) => this.knob("scene", key, key, (s) => s[key])));
     (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`, [...this.materialRow(i),
       ...[...("medium" in shape ? [] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), "normals", "visible"].map((key) =>
@@ -112,6 +114,11 @@ export class Knobs {
     group("film", "Image", this.rowsOf("film", "film", (s) => s.film));
     group("settings", "Method", this.rowsOf("settings", "settings", (s) => s.settings, ["laboratory"]));
     group("laboratory", "Laboratory", this.rowsOf("settings.laboratory", "settings.laboratory", (s) => (s.settings || {}).laboratory));
+  }
+
+  buttons(messages) {
+    return make("p", {className: "buttons"}, ...messages.map(([textContent, message]) =>
+      make("button", {type: "button", textContent, onclick: () => this.step(message)})));
   }
 
   // Opens a group and moves to it.

@@ -393,7 +393,7 @@ const connection = new Connection({
     if (behind.trade || behind.reference) askBehind({});
   },
 });
-const knobs = new Knobs(one("panel"), set, (text) => { one("help").textContent = text; one("told").textContent = ""; });
+const knobs = new Knobs(one("panel"), set, (text) => { one("help").textContent = text; one("told").textContent = ""; }, step);
 const overlay = new Overlay(one("overlay"), state, set, (name, index) => knobs.pathOf(name, index));
 
 const trade = new Trade(one("points"), takePoint);
