@@ -107,8 +107,10 @@ void choose_colors(const MeshFile& file, const std::string& name, SourceMesh& me
 SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs) {
   SourceMesh mesh = std::visit(SourceReader{name, uvs}, shape.source);
   if ((uvs == MeshUvs::required || uvs == MeshUvs::with_tangents) && mesh.uvs.empty())
-    throw bad_file(name, "has textures but no UVs", "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF",
-                   "none");
+    throw bad_file(
+        name, "has textures but no UVs",
+        "vt lines in OBJ, u and v in PLY, TEXCOORD_0 in glTF; or textures with 'triplanar' or 'noise'",
+        "none");
   if (const auto* file = std::get_if<MeshFile>(&shape.source)) {
     choose_colors(*file, name, mesh);
     for (int round = 0; round < file->subdivide; ++round) {

@@ -106,10 +106,13 @@ double SolidNoise::blend_at(const Vec3d& point, double width) const {
   return kVeinWidth / widened / (1 + across * across);
 }
 
+double SolidNoise::filtered_blend(const Vec3d& point, double width) const {
+  const double blend = blend_at(point, width), left = left_by_filter(width / parameters_.size);
+  return left < 1 ? mean_blend() + std::sqrt(left) * (blend - mean_blend()) : blend;
+}
+
 std::array<float, 4> SolidNoise::at(const Vec3d& point, double width) const {
-  double blend = blend_at(point, width);
-  const double left = left_by_filter(width / parameters_.size);
-  if (left < 1) blend = mean_blend() + std::sqrt(left) * (blend - mean_blend());
+  const double blend = filtered_blend(point, width);
   std::array<float, 4> texel{0, 0, 0, 1};
   for (std::size_t c = 0; c < 3; ++c)
     texel[c] = float(parameters_.low[c] + blend * (parameters_.high[c] - parameters_.low[c]));
@@ -124,10 +127,9 @@ Vec3d SolidNoise::gradient(const Vec3d& point, double width, std::size_t channel
     Vec3d before = point, behind = point;
     before[c] -= step;
     behind[c] += step;
-    result[c] =
-        (double(at(behind, width)[channel]) - double(at(before, width)[channel])) / (behind[c] - before[c]);
+    result[c] = (filtered_blend(behind, width) - filtered_blend(before, width)) / (behind[c] - before[c]);
   }
-  return result;
+  return result * (parameters_.high[channel] - parameters_.low[channel]);
 }
 
 std::optional<Texel> SolidNoise::constant() const {

@@ -43,11 +43,12 @@ class SolidNoise final : public TextureSource {
   TexelsAboveOne above_one(const Vec3d& scale) const override;
   Texel mean() const override;
   std::string path() const override;
-  bool has_channel(std::size_t) const override { return true; }
+  bool has_channel(std::size_t channel) const override { return channel < 3; }
   std::uint64_t hash() const override;
 
  private:
   double blend_at(const Vec3d& point, double width) const;
+  double filtered_blend(const Vec3d& point, double width) const;
   double mean_blend() const;
 
   NoiseParameters parameters_;

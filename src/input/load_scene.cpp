@@ -238,6 +238,9 @@ std::string clipped_colors(const std::optional<Texture>& texture) {
   if (!texture || texture->is_relative) return {};
   const TexelsAboveOne above = texture->source->above_one(texture->scale);
   if (above.count == 0) return {};
+  if (texture->source->noise() != nullptr)
+    return fmt::format("noise ({}): colours above 1 are rendered as 1; the largest is {:.3g}",
+                       texture->source->path(), above.largest);
   return fmt::format("{}: {} of {} texels{} have a colour above 1, rendered as 1; the largest is {:.3g}",
                      texture->source->path(), above.count, above.texels,
                      texture->scale == Vec3d(1) ? "" : " times their scale", above.largest);

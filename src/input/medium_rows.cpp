@@ -81,10 +81,10 @@ std::span<const MediumRow> medium_rows() {
       row("medium", "specular_ior", number, "", {.1, 10},
           "the preset's (of measured ones 1.3, marble 1.5), the first layer's, else 1.3",
           "index of refraction, inside over outside"),
-      textured<&Medium::specular_roughness, &Medium::roughness_texture>(
-          row("medium", "specular_roughness", number, "", kUnitInterval, "the look's, else 0",
-              "roughness of the specular reflection: 0 smooth, 0.3 satin; only a rough surface shows "
-              "highlights of point, spot and directional lights")),
+      textured<&Medium::specular_roughness, &Medium::roughness_texture>(row(
+          "medium", "specular_roughness", number, "", kUnitInterval, "the look's, the first layer's, else 0",
+          "roughness of the specular reflection: 0 smooth, 0.3 satin; only a rough surface shows "
+          "highlights of point, spot and directional lights")),
       row("medium", "specular_weight", number, "", {0, 1}, "1",
           "factor of the specular reflectance at normal incidence, through a modified index of refraction, "
           "also for light from inside; at 0 all light enters"),

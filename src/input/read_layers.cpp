@@ -70,6 +70,8 @@ void read_layers(const Value& value, double mm_per_unit, std::span<const Medium>
     layer.medium = own.name;
     layer.coefficients = coefficients_of(own);
     if (i == 0 && !reader.find("specular_ior") && !reader.find("specular_weight")) medium.eta = own.eta;
+    if (i == 0 && !reader.find("specular_roughness") && !own.roughness_texture)
+      medium.specular_roughness = own.specular_roughness;
     const auto thickness = one.find("thickness");
     const bool is_last = i + 1 == list.size();
     if (is_last && thickness)

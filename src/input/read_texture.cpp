@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <initializer_list>
 #include <memory>
 #include <string_view>
@@ -135,6 +136,8 @@ Texture read_texture(const Value& value, TexturePart part) {
   if (channel && part != TexturePart::number)
     value.fail(part == TexturePart::color ? "is a colour" : "requires three numbers", "no 'channel'");
   if (channel) texture.channel = channel->choice();
+  if (channel && !is_image && !texture.source->has_channel(texture.channel))
+    channel->fail("is not in 'noise'", "r, g or b");
   check_channels(origin, channel, texture, part);
   if (const auto uv_scale = reader.find("uv_scale")) texture.uv_scale = read_pair(*uv_scale);
   if (const auto rotation = reader.find("uv_rotation")) texture.uv_rotation = rotation->number();
@@ -192,8 +195,8 @@ Rgb take_mean(Texture& texture) {
 
 Texture read_normal_map(const Value& value) {
   Texture map = read_texture(value, TexturePart::triple);
-  if (is_solid(map))
-    value.fail("needs an image mapped by UVs", "a 'bump_map', or an image without 'triplanar'");
+  if (is_solid(map) || std::ranges::any_of(map.details, is_solid))
+    value.fail("needs images mapped by UVs", "a 'bump_map', or images without 'triplanar'");
   return map;
 }
 

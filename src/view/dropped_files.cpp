@@ -2,13 +2,14 @@
 #include "view/dropped_files.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <filesystem>
 #include <memory>
-#include <numeric>
 #include <system_error>
 
 #include "assets/import_asset.h"
@@ -55,6 +56,30 @@ std::string main_file(const std::vector<std::string>& names) {
   return *environment;
 }
 
+struct Place {
+  std::string_view drop;
+  std::size_t file;
+};
+
+/// The drop and the file of an upload's address.
+Place place_of(std::string_view address) {
+  constexpr std::string_view kStart = DroppedFiles::kAddress;
+  const std::size_t slash = address.find('/', kStart.size());
+  const std::string_view drop = address.substr(0, slash).substr(kStart.size()),
+                         index = slash == address.npos ? std::string_view() : address.substr(slash + 1);
+  const auto is_number = [](std::string_view text) {
+    return !text.empty() && text.size() <= 16 && text.find_first_not_of("0123456789") == text.npos;
+  };
+  if (!is_number(drop) || !is_number(index))
+    throw bad_file("", "an upload has an invalid address", "numbers of a drop and of a file",
+                   printable(address));
+  std::size_t file = DroppedFiles::kMostFiles;
+  std::from_chars(index.data(), index.data() + index.size(), file);
+  if (file >= DroppedFiles::kMostFiles)
+    throw bad_file("", "too many files were dropped", fmt::format("at most {}", DroppedFiles::kMostFiles));
+  return {drop, file};
+}
+
 }  // namespace
 
 bool is_plain_name(const std::string& name) {
@@ -71,46 +96,45 @@ bool is_environment_name(const std::string& path) {
 DroppedFiles::~DroppedFiles() {
   forget();
   std::error_code ignored;
-  if (!folder_.empty()) fs::remove(folder_, ignored);  // if it is empty
-}
-
-std::string DroppedFiles::incoming() const {
-  return fmt::format("{}/.incoming-{}", folder_, ::getpid());
+  if (is_new_) fs::remove(folder_, ignored);  // if it is empty
 }
 
 void DroppedFiles::forget() {
   std::error_code ignored;
-  if (!drop_.empty()) fs::remove_all(incoming(), ignored);
+  if (!incoming_.empty()) fs::remove_all(incoming_, ignored);
+  incoming_.clear();
   drop_.clear();
-  bytes_.clear();
+  uploads_.clear();
 }
 
 std::string DroppedFiles::begin(std::string_view address, std::uint64_t bytes) {
-  const std::size_t slash = address.find('/', kAddress.size());
-  const std::string_view drop = address.substr(0, slash).substr(kAddress.size()),
-                         index = slash == address.npos ? std::string_view() : address.substr(slash + 1);
-  const auto is_number = [](std::string_view text) {
-    return !text.empty() && text.size() <= 16 && text.find_first_not_of("0123456789") == text.npos;
-  };
-  if (!is_number(drop) || !is_number(index))
-    throw bad_file("", "an upload has an invalid address", "numbers of a drop and of a file",
-                   printable(address));
-  std::size_t file = kMostFiles;
-  std::from_chars(index.data(), index.data() + index.size(), file);
-  if (file >= kMostFiles)
-    throw bad_file("", "too many files were dropped", fmt::format("at most {}", kMostFiles));
-  if (drop != drop_) {
+  const Place place = place_of(address);
+  if (place.drop != drop_) {
     forget();
-    on_disk(folder_, [&] { fs::create_directories(incoming()); });
-    drop_ = drop;
+    on_disk(folder_, [&] { is_new_ = fs::create_directories(folder_) || is_new_; });
+    incoming_ = folder_ + "/.incoming-XXXXXX";
+    if (::mkdtemp(incoming_.data()) == nullptr) {
+      incoming_.clear();
+      throw run_failed(folder_, std::string("cannot store dropped files: ") + std::strerror(errno));
+    }
+    drop_ = place.drop;
   }
-  bytes_.resize(std::max(bytes_.size(), file + 1));
-  bytes_[file] = bytes;
-  if (bytes > kMostBytes || std::reduce(bytes_.begin(), bytes_.end()) > kMostBytes) {
+  uploads_.resize(std::max(uploads_.size(), place.file + 1));
+  Upload& upload = uploads_[place.file];
+  if (upload.has_begun) throw bad_file("", "a dropped file is uploaded twice");
+  upload = {bytes, true, false};
+  std::uint64_t all = 0;
+  for (const Upload& each : uploads_) all += std::min(each.bytes, kMostBytes + 1);
+  if (all > kMostBytes) {
     forget();
     throw bad_file("", "the dropped files are too large", fmt::format("at most {} GiB", kMostBytes >> 30));
   }
-  return fmt::format("{}/{}", incoming(), file);
+  return fmt::format("{}/{}", incoming_, place.file);
+}
+
+void DroppedFiles::end(std::string_view address) {
+  const Place place = place_of(address);
+  if (place.drop == drop_ && place.file < uploads_.size()) uploads_[place.file].has_ended = true;
 }
 
 std::string DroppedFiles::take(const std::string& drop, const std::vector<std::string>& names) {
@@ -118,7 +142,7 @@ std::string DroppedFiles::take(const std::string& drop, const std::vector<std::s
   const std::shared_ptr<void> end(nullptr, [&](void*) {
     if (is_known) forget();
   });
-  if (!is_known || names.size() != bytes_.size())
+  if (!is_known || names.size() != uploads_.size() || !std::ranges::all_of(uploads_, &Upload::has_ended))
     throw bad_file("", "the dropped files are incomplete", "uploads of all files of one drop");
   for (const std::string& name : names)
     if (!is_plain_path(name))
@@ -126,7 +150,8 @@ std::string DroppedFiles::take(const std::string& drop, const std::vector<std::s
                      "names without '..', not hidden, at most 200 bytes long", "'" + printable(name) + "'");
   const std::string main = main_file(names), stem = fs::path(main).stem().string();
   std::string folder = folder_ + '/' + stem;
-  for (int copy = 2; fs::exists(folder); ++copy) folder = fmt::format("{}/{}-{}", folder_, stem, copy);
+  for (int copy = 2; fs::exists(fs::symlink_status(folder)); ++copy)
+    folder = fmt::format("{}/{}-{}", folder_, stem, copy);
   taken_.push_back(folder);
   const std::string path = folder + '/' + main;
   try {
@@ -134,7 +159,7 @@ std::string DroppedFiles::take(const std::string& drop, const std::vector<std::s
       for (std::size_t i = 0; i < names.size(); ++i) {
         const fs::path target = fs::path(folder) / names[i];
         fs::create_directories(target.parent_path());
-        fs::rename(fmt::format("{}/{}", incoming(), i), target);
+        fs::rename(fmt::format("{}/{}", incoming_, i), target);
       }
     });
   } catch (const Error&) {

@@ -25,9 +25,12 @@ class DroppedFiles {
 
   /// File to write an upload to.
   /// in    address: of the upload; bytes: its size
-  /// error Error{bad_input}: more than kMostFiles or kMostBytes, or another address; Error{run_failed}: the folder
-  ///       cannot be written
+  /// error Error{bad_input}: more than kMostFiles or kMostBytes, another address, or the same file again;
+  ///       Error{run_failed}: the folder cannot be written
   std::string begin(std::string_view address, std::uint64_t bytes);
+
+  /// Notes the end of an upload.
+  void end(std::string_view address);
 
   /// Moves the uploads into a new folder, and returns the path of the asset, or of the environment map without one.
   /// in    names: of the files in the order of their numbers, with '/' between folders
@@ -39,12 +42,16 @@ class DroppedFiles {
   void discard(const std::string& path);
 
  private:
-  std::string incoming() const;
+  struct Upload {
+    std::uint64_t bytes = 0;
+    bool has_begun = false, has_ended = false;
+  };
   void forget();
 
-  std::string folder_, drop_;
-  std::vector<std::uint64_t> bytes_;  // by file of the drop
-  std::vector<std::string> taken_;    // folders
+  std::string folder_, drop_, incoming_;  // incoming_: folder of uploads; empty: none
+  std::vector<Upload> uploads_;           // by file of the drop
+  std::vector<std::string> taken_;        // folders
+  bool is_new_ = false;                   // folder_ was made here
 };
 
 /// True if the path ends in a format of environment maps.

@@ -28,7 +28,9 @@ void FileWatch::watch(const std::vector<std::string>& files) {
   if (!events_.is_open()) return;
   std::map<int, std::map<std::string, std::string>> paths;
   for (const std::string& file : files) {
-    const std::filesystem::path path = std::filesystem::absolute(file);
+    std::error_code missing;
+    const std::filesystem::path path =
+        std::filesystem::weakly_canonical(std::filesystem::absolute(file), missing);
     const int watch = ::inotify_add_watch(events_.native_handle(), path.parent_path().c_str(),
                                           IN_CLOSE_WRITE | IN_MOVED_TO);
     if (watch >= 0) paths[watch][path.filename().string()] = file;

@@ -96,6 +96,7 @@ void HttpConnection::begin_upload(const std::string& address) {
   beast::error_code error;
   try {
     const std::string path = events_.upload(address, *parser_.content_length());
+    upload_address_ = address;
     upload_.emplace(std::move(parser_));
     upload_->get().body().open(path.c_str(), beast::file_mode::write, error);
   } catch (const Error& failure) {
@@ -109,6 +110,7 @@ void HttpConnection::begin_upload(const std::string& address) {
 void HttpConnection::receive_upload() {
   if (upload_->is_done()) {
     upload_->get().body().close();
+    events_.uploaded(upload_address_);
     return respond(http::status::ok, "text/plain", "");
   }
   stream_.expires_after(kPatience);

@@ -40,6 +40,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     /// Returns the file to write an upload to.
     /// error Error
     std::function<std::string(std::string_view address, std::uint64_t bytes)> upload;
+    std::function<void(std::string_view address)> uploaded;
     std::function<void(const std::string& why)> refused;
   };
 
@@ -62,6 +63,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   boost::beast::flat_buffer in_;
   boost::beast::http::request_parser<boost::beast::http::empty_body> parser_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::file_body>> upload_;
+  std::string upload_address_;
   boost::beast::http::response<boost::beast::http::string_body> response_;
 };
 

@@ -153,21 +153,20 @@ SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given, 
   revision_ = 1;
 }
 
-/// Rejects edits opening files: by their key, or by an object with one, in any spelling.
-void SceneEdits::check_opens_nothing(const std::string& edit) const {
-  if (std::ranges::find(with_files_, edit) != with_files_.end()) return;
+/// True for edits opening files: by their key, or by an object with one, in any spelling.
+bool SceneEdits::opens_file(const std::string& edit) const {
+  if (std::ranges::find(with_files_, edit) != with_files_.end()) return false;
   const std::size_t end = edit.find('=');
   const std::string path = '.' + edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
-  const bool opens = std::ranges::any_of(file_keys(), [&](std::string_view key) {
-    return path.ends_with('.' + std::string(key)) ||
-           value.find('"' + std::string(key) + '"') != std::string::npos;
-  });
-  if (opens || value.find('\\') != std::string::npos)
-    throw bad_file(file_, "the view cannot change files", "the files of the opened scene");
+  return value.find('\\') != std::string::npos || std::ranges::any_of(file_keys(), [&](std::string_view key) {
+           return path.ends_with('.' + std::string(key)) ||
+                  value.find('"' + std::string(key) + '"') != std::string::npos;
+         });
 }
 
 Scene SceneEdits::parsed(const Edits& edits, const Look& look) const {
-  for (const std::string& edit : edits) check_opens_nothing(edit);
+  if (std::ranges::any_of(edits, [&](const std::string& edit) { return opens_file(edit); }))
+    throw bad_file(file_, "the view cannot change files", "the files of the opened scene");
   Scene scene = read(edits, look, frame_);
   if (mesh_files(scene) != mesh_files(scene_))
     throw bad_file(file_, "the view cannot change mesh files", "the files of the opened scene");
@@ -195,11 +194,16 @@ Assignment SceneEdits::with_key(const Assignment& change) const {
 }
 
 void SceneEdits::set(const SetValues& message) {
+  change(message, true);
+}
+
+/// at_frame: keyed values get a key at the frame, instead of one value
+void SceneEdits::change(const SetValues& message, bool at_frame) {
   Edits edits = history_[at_];
   Look look = look_;
   for (const Assignment& given : message.values) {
     if (moves_camera(given.path)) look.reset();
-    const Assignment change = with_key(given);
+    const Assignment change = at_frame ? with_key(given) : given;
     std::erase_if(edits, [&](const std::string& text) { return is_within(text, change.path); });
     drop_replaced_surface(edits, change.path);
     edits.push_back(change.path + '=' + change.value);
@@ -246,13 +250,21 @@ void SceneEdits::reset() {
   ++revision_;
 }
 
-void SceneEdits::restore(const std::vector<std::string>& edits) {
-  if (revision_ > 1 || edits.empty()) return;
-  Scene scene = parsed(edits, look_);
-  history_.push_back(edits);
+std::string SceneEdits::restore(const std::vector<std::string>& edits) {
+  if (revision_ > 1 || edits.empty()) return {};
+  Edits kept;
+  std::string lost;
+  for (const std::string& edit : edits)
+    if (!opens_file(edit))
+      kept.push_back(edit);
+    else if (lost.empty())
+      lost = edit;
+  Scene scene = parsed(kept, look_);
+  history_.push_back(std::move(kept));
   ++at_;
   scene_ = std::move(scene);
   ++revision_;
+  return lost;
 }
 
 void SceneEdits::open(const std::string& file) {
@@ -267,15 +279,20 @@ void SceneEdits::open(const std::string& file) {
 
 std::string SceneEdits::reload() {
   SceneEdits opened(file_, given_, given_frames_);
-  std::string lost;
   opened.with_files_ = with_files_;
+  opened.history_ = history_;
+  opened.at_ = at_;
+  std::string lost;
   try {
-    if (std::ranges::find(opened.frames_, frame_) != opened.frames_.end()) opened.go_to_frame(frame_);
-    opened.revision_ = 1;
-    opened.restore(edits());
-    if (look_) opened.look(*look_);
+    if (std::ranges::find(opened.frames_, frame_) != opened.frames_.end()) opened.frame_ = frame_;
+    opened.scene_ = opened.parsed(edits(), look_);
+    opened.look_ = look_;
   } catch (const Error& failure) {
     lost = failure.what();
+    opened.history_.resize(at_ + 1);
+    opened.history_.emplace_back();
+    ++opened.at_;
+    opened.scene_ = opened.read({}, {}, opened.frame_);
   }
   opened.revision_ = revision_ + 1;
   *this = std::move(opened);
@@ -289,30 +306,30 @@ std::vector<std::string> SceneEdits::files() const {
 }
 
 void SceneEdits::light_by(const std::string& picture) {
-  SetValues change;
+  SetValues values;
   for (const std::string& edit : environment_overrides(picture)) {
     const std::size_t end = edit.find('=');
-    change.values.push_back({edit.substr(0, end), edit.substr(end + 1)});
+    values.values.push_back({edit.substr(0, end), edit.substr(end + 1)});
     with_files_.push_back(edit);
   }
-  set(change);
+  change(values, false);
 }
 
-void SceneEdits::change_lights(const ChangeLights& change) {
+void SceneEdits::change_lights(const ChangeLights& wanted) {
   Json lights =
       Json::parse(merged_scene(text_, file_, all_overrides(edits()))).value("lights", Json::array());
-  const auto index = std::size_t(change.index);
-  if (change.change == ChangeLights::Change::add) {
+  const auto index = std::size_t(wanted.index);
+  if (wanted.change == ChangeLights::Change::add) {
     lights.push_back(new_light(scene_));
   } else if (index >= lights.size()) {
     throw bad_file(file_, "there is no light " + std::to_string(index),
                    std::to_string(lights.size()) + " lights");
-  } else if (change.change == ChangeLights::Change::copy) {
+  } else if (wanted.change == ChangeLights::Change::copy) {
     lights.push_back(lights.at(index));
   } else {
-    lights.erase(lights.begin() + change.index);
+    lights.erase(lights.begin() + wanted.index);
   }
-  if (change.change != ChangeLights::Change::remove)
+  if (wanted.change != ChangeLights::Change::remove)
     lights.back()["name"] = unused_name(lights, lights.back().value("name", "light"));
   const std::string value = lights.dump();
   with_files_.push_back("lights=" + value);

@@ -32,13 +32,14 @@ class SceneEdits {
   void undo();
   void redo();
   void reset();
-  /// No effect after an edit of the scene.
-  void restore(const std::vector<std::string>& edits);
+  /// No effect after an edit of the scene. Returns the first edit left out because it names a file, if any.
+  std::string restore(const std::vector<std::string>& edits);
 
   /// Opens another file without edits; command-line overrides of film and settings stay.
   /// error as the constructor
   void open(const std::string& file);
-  /// Reads the file again, as its change on the disk left it. Returns the reason if the edits no longer fit and are lost.
+  /// Reads the file again, as its change on the disk left it. If the edits no longer fit, they are undone as a step;
+  /// returns the reason.
   /// error as the constructor, without a change
   std::string reload();
   /// Files of the scene: itself and its meshes.
@@ -48,7 +49,7 @@ class SceneEdits {
 
   /// An edit of the list of lights; keyed values keep their keys. A new light is above the camera's point of interest.
   /// error Error{bad_input}: no light of this index
-  void change_lights(const ChangeLights& change);
+  void change_lights(const ChangeLights& wanted);
 
   /// Shows another frame; not a step of undo.
   /// error as parse_scene; Error{bad_input}: none of frames()
@@ -92,9 +93,10 @@ class SceneEdits {
   Scene parsed(const Edits& edits, const Look& look) const;
   Scene read(const Edits& edits, const Look& look, int frame) const;
   Edits all_overrides(const Edits& edits) const;
-  void check_opens_nothing(const std::string& edit) const;
+  bool opens_file(const std::string& edit) const;
   Assignment with_key(const Assignment& change) const;
   void go_to(std::size_t place);
+  void change(const SetValues& message, bool at_frame);
 
   std::string file_, text_;
   Edits placed_;  // placement of an asset's default camera and lights

@@ -89,6 +89,7 @@ std::string scene_text(const SceneEdits& edits, const std::string& command) {
   return compact({{"is", "scene"},
                   {"revision", edits.revision()},
                   {"file", std::filesystem::path(edits.file()).filename().string()},
+                  {"path", std::filesystem::absolute(edits.file()).string()},
                   {"scene", Json::parse(edits.json())},
                   {"look", look},
                   {"edits", edits.edits()},

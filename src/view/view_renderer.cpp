@@ -110,14 +110,17 @@ std::optional<std::size_t> ViewRenderer::shape_at(const std::array<int, 2>& pixe
 std::optional<ViewRenderer::Wanted> ViewRenderer::next() {
   std::unique_lock lock(mutex_);
   monitor_.begin(nullptr, 0);
-  is_drawing_ = false;
+  is_drawing_ = refines_ = false;
   for (;;) {
     changed_.wait(lock, [&] { return stopped_ || wanted_ || picked_; });
     if (stopped_) return {};
     if (!picked_) break;
     const std::array<int, 2> pixel = *std::exchange(picked_, {});
     lock.unlock();
-    events_.picked(shape_at(pixel));
+    try {
+      events_.picked(shape_at(pixel));
+    } catch (const std::bad_alloc&) {  // no answer
+    }
     lock.lock();
   }
   is_drawing_ = true;
@@ -204,6 +207,7 @@ void ViewRenderer::draw(const Wanted& wanted) {
   session_->prepare(is_quick ? &brief_ : &monitor_);
   spent.prepare = seconds_since(start);
   prepared_ = wanted.scene;
+  refines_ = true;
   if (is_direct) return draw_direct(wanted);
   if (lit != nullptr && lit->step == PictureStep::final)
     return report(wanted, lit->image, estimated_relative_error(lit->image, lit->translucent),

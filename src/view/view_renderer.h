@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -77,6 +78,8 @@ class ViewRenderer {
   /// Progress of the current work.
   const Monitor& monitor() const { return monitor_; }
   bool is_drawing();
+  /// True if it draws an image of prepared stages: an interruption loses little.
+  bool can_interrupt() const { return refines_; }
   /// Ends long interactive work, which newer scenes do not cancel, if a scene waits. Call regularly during
   /// drawing.
   void end_stale_work();
@@ -117,7 +120,8 @@ class ViewRenderer {
   ViewEvents events_;
   std::unique_ptr<Session> session_;
   std::optional<Scene> prepared_;
-  std::optional<Scene> anchor_;  ///< scene anchoring the session, without values irrelevant to samples
+  std::atomic<bool> refines_ = false;  ///< draws from prepared_
+  std::optional<Scene> anchor_;        ///< scene anchoring the session, without values irrelevant to samples
   std::shared_ptr<const ViewPicture> final_;  ///< the last one, of final_scene_
   std::optional<Scene> final_scene_;
   std::array<Spent, kChanges> spent_;

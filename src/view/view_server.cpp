@@ -18,6 +18,7 @@
 #include <thread>
 #include <utility>
 
+#include "asset_files/asset_file.h"
 #include "core/atomic_file.h"
 #include "input/load_scene.h"
 #include "opaline/error.h"
@@ -112,6 +113,7 @@ struct ViewServer::State {
   std::unique_ptr<ViewBackground> background;
   BackgroundWork asked;  ///< requested background work
   PageConnection* picking = nullptr;
+  std::set<std::string> changed_files;  ///< since the scene was read
   FileWatch watch{io, [this](const std::set<std::string>& files) { reload(files); }};
 };
 
@@ -168,6 +170,7 @@ void ViewServer::State::accept() {
           open_page(std::move(stream), request, std::move(taken));
         },
         [this](std::string_view address, std::uint64_t bytes) { return dropped.begin(address, bytes); },
+        [this](std::string_view address) { dropped.end(address); },
         [this, from](const std::string& why) { hooks.refused(from + ": " + why); }};
     std::make_shared<HttpConnection>(std::move(socket), rules, events, slot)->start();
   });
@@ -236,7 +239,9 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
   if (std::holds_alternative<Undo>(message)) edits.undo();
   if (std::holds_alternative<Redo>(message)) edits.redo();
   if (std::holds_alternative<Reset>(message)) edits.reset();
-  if (const auto* restore = std::get_if<Restore>(&message)) edits.restore(restore->edits);
+  if (const auto* restore = std::get_if<Restore>(&message))
+    if (const std::string lost = edits.restore(restore->edits); !lost.empty())
+      page.answer(told_text(false, "not restored, as the view cannot change files: " + lost));
   if (const auto* files = std::get_if<OpenFiles>(&message)) open(page, *files);
   if (const auto* save_as = std::get_if<SaveScene>(&message)) save(page, save_as->name);
   if (const auto* file = std::get_if<RenderFile>(&message)) render_file(page, file->name);
@@ -303,6 +308,8 @@ void ViewServer::State::after_edit(bool has_new_files) {
 void ViewServer::State::open(PageConnection& page, const OpenFiles& files) {
   const std::string path = dropped.take(files.drop, files.names);
   try {
+    if (are_files_outside_assets_allowed())
+      throw bad_file(path, "is not opened", "a view without --allow-outside: pages would read any file");
     if (is_environment_name(path))
       edits.light_by(path);
     else
@@ -316,12 +323,14 @@ void ViewServer::State::open(PageConnection& page, const OpenFiles& files) {
 
 /// Files of the scene have changed on the disk. Stages are reused if none of them is a mesh.
 void ViewServer::State::reload(const std::set<std::string>& files) {
+  changed_files.insert(files.begin(), files.end());
   std::string answer;
   try {
     const std::string lost = edits.reload();
     answer = told_text(lost.empty(), "opened " + edits.file() + " again" +
                                          (lost.empty() ? "" : ", without its edits: " + lost));
-    after_edit(is_asset_name(edits.file()) || files != std::set{edits.file()});
+    after_edit(is_asset_name(edits.file()) || changed_files != std::set{edits.file()});
+    changed_files.clear();
   } catch (const std::exception& failure) {
     answer = told_text(false, failure.what());
   }
@@ -335,7 +344,7 @@ void ViewServer::State::pick(PageConnection& page, const Pick& place) {
   if (place.x >= part.x1 - part.x0 || place.y >= part.y1 - part.y0) return;
   picking = &page;
   renderer->pick(part.x0 + place.x, part.y0 + place.y);
-  if (renderer->is_drawing()) renderer->show(edits.scene(), edits.revision(), edits.reference());
+  if (renderer->can_interrupt()) renderer->show(edits.scene(), edits.revision(), edits.reference());
 }
 
 /// Note on written files differing from the view.

@@ -86,6 +86,21 @@ TEST(SolidNoise, IsSmooth) {
   }
 }
 
+// Claim: the gradient of heights on an offset is that of the heights. Tolerance: 1e-9 of it. Fails if it is a difference of
+// rounded values.
+TEST(SolidNoise, GradientsKeepSmallHeights) {
+  NoiseParameters heights = parameters(NoisePattern::clouds, 12), raised = heights;
+  heights.low = {0, 0, 0};
+  heights.high = {1, 1, 1};
+  raised.low = {1e6, 1e6, 1e6};
+  raised.high = {1e6 + 1, 1e6 + 1, 1e6 + 1};
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const Vec3d own = SolidNoise(heights).gradient(random_point(i), 1e-6, 0),
+                other = SolidNoise(raised).gradient(random_point(i), 1e-6, 0);
+    EXPECT_LE(length(own - other), 1e-9 * length(own));
+  }
+}
+
 // Claim: seeds and octaves give other patterns, positions that are not finite finite values, and equal ends a constant.
 TEST(SolidNoise, Extremes) {
   NoiseParameters one = parameters(NoisePattern::veins), other = one;

@@ -154,7 +154,7 @@ TEST(SolidTextures, MediaCarryNoise) {
     "shapes": [{"name": "ball", "sphere": {"radius": 5}, "medium": "stone"}],
     "lights": [{"type": "directional", "direction": [0, 0, -1], "irradiance": 3}],
     "camera": {"position": [0, 0, 40], "look_at": [0, 0, 0], "field_of_view": 16},
-    "film": {"resolution": [24, 24]}, "settings": {"method": "hierarchical"}})";
+    "film": {"resolution": [24, 24]}, "settings": {"method": "volume_diffusion"}})";
   Session session;
   const auto shown = [&](const std::vector<std::string>& overrides) {
     return picture_of(session, with_few_triangles(parse_scene(text, folder.file("scene.json"), overrides)));
@@ -176,6 +176,7 @@ TEST(SolidTextures, MediaCarryNoise) {
   for (int y = 6; y < 18; ++y)
     for (int x = 6; x < 18; ++x) {
       kept = std::max(kept, std::abs(double(channel(image, x, y, "R") / channel(same, x, y, "R")) - 1));
+      warm = std::max(warm, std::abs(double(channel(cold, x, y, "R") / channel(other, x, y, "R")) - 1));
       changed =
           std::max(changed, std::abs(double(channel(image, x, y, "R") / channel(other, x, y, "R")) - 1));
     }
@@ -210,6 +211,14 @@ TEST(SolidTextures, MistakesAreRefused) {
   fails(R"("reflectance": {"texture": "even.exr", "octaves": 2})", "has no effect without 'noise'");
   fails(R"("normal_map": {"texture": "even.exr", "triplanar": 3}, "reflectance": 0.5)", "mapped by UVs");
   fails(R"("normal_map": {"noise": "clouds", "size": 3}, "reflectance": 0.5)", "mapped by UVs");
+  fails(
+      R"("normal_map": {"texture": "even.exr", "detail": [{"noise": "clouds", "size": 3}]}, "reflectance": 0.5)",
+      "mapped by UVs");
+  fails(
+      R"("normal_map": {"texture": "even.exr", "detail": [{"texture": "even.exr", "triplanar": 3}]}, "reflectance": 0.5)",
+      "mapped by UVs");
+  fails(R"("bump_map": {"noise": "clouds", "size": 3, "channel": "a"}, "reflectance": 0.5)",
+        "not in 'noise'");
   EXPECT_EQ(message(R"("reflectance": {"noise": "clouds", "size": 3, "low": 0.4, "high": 0.4})"), "none");
 }
 

@@ -168,6 +168,23 @@ TEST(SceneEdits, KeysStay) {
   EXPECT_EQ(edits.scene().camera.position, (Vec3d{1, 2, 3}));
 }
 
+// Claim: an environment map replaces keyed values at all frames, and edits naming it are left out by a new server, which
+// restores the others. Fails if the values get a key at the shown frame, or if one refused edit loses all.
+TEST(SceneEdits, EnvironmentMapsReplaceKeys) {
+  const ViewFolder folder;
+  put_exr(folder.file("sky.exr"), 8, 4, [](int, int) { return std::array<double, 3>{1, 1, 1}; });
+  const Words keyed{R"(surroundings={"keyed": {"1": 0.1, "5": 0.9}})"};
+  SceneEdits edits(folder.scene, keyed);
+  edits.light_by(folder.file("sky.exr"));
+  edits.set(one("media.stone.specular_ior", "1.4"));
+  edits.go_to_frame(3);
+  EXPECT_EQ(edits.scene().lights.size(), 1u);
+  SceneEdits restarted(folder.scene, keyed);
+  EXPECT_NE(restarted.restore(edits.edits()).find("sky.exr"), std::string::npos);
+  EXPECT_DOUBLE_EQ(restarted.scene().media[0].eta, 1.4);
+  EXPECT_EQ(restarted.scene().lights.size(), 3u);  // without surroundings
+}
+
 // Claim: lights are added, copied with a new name, and removed, each as one step; keys of a light and the file of an
 // environment map stay. Fails if the list is that of the shown frame, if a file of the scene is refused, or if the new
 // light misses the point of interest.

@@ -151,6 +151,18 @@ TEST_F(ViewDrops, BadOnesAreRefused) {
   drop("7", {kTetrahedron});
   page.send({{"do", "open"}, {"drop", "7"}, {"names", {"a.obj", "a.mtl"}}});
   EXPECT_TRUE(contains(page.read_answer(), "incomplete"));
+  drop("8", {kTetrahedron});
+  EXPECT_EQ(put("/dropped/8/0", kTetrahedron), 400);  // again
+  asio::io_context io;
+  beast::tcp_stream broken(io);
+  broken.connect(view->endpoint());
+  const std::string head = "PUT /" + std::string(kToken) + "/dropped/9/0 HTTP/1.1\r\nHost: " + view->host() +
+                           "\r\nOrigin: http://" + view->host() +
+                           "\r\nContent-Length: 100000\r\n\r\nv 0 0 0\n";
+  asio::write(broken.socket(), asio::buffer(head));
+  while (left().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  page.send({{"do", "open"}, {"drop", "9"}, {"names", {"half.obj"}}});
+  EXPECT_TRUE(contains(page.read_answer(), "incomplete"));
   EXPECT_EQ(page.revision(), 1u);
   view.reset();
   EXPECT_EQ(left(), std::vector<std::string>{});

@@ -52,6 +52,15 @@ TEST_F(ViewReload, ChangedScenesAreShown) {
   EXPECT_FALSE(page.texts.at("told").at("good"));
   EXPECT_EQ(page.texts.at("scene").at("edits"), Json::array());
   EXPECT_TRUE(page.frame.colours == rendered(folder.scene));
+  for (int i = 0; i < 3; ++i) replace(text, "rock", "stone");
+  put_bytes(folder.scene, text);
+  ASSERT_TRUE(page.read_final(6));
+  page.send({{"do", "undo"}});
+  ASSERT_TRUE(page.read_final(7));
+  EXPECT_EQ(page.texts.at("scene").at("edits"), Json::array({"media.stone.specular_ior=1.4"}));
+  page.send({{"do", "undo"}});
+  ASSERT_TRUE(page.read_final(8));
+  EXPECT_EQ(page.texts.at("scene").at("edits"), Json::array());
 }
 
 // Claim: a mesh written anew is shown, although the scene file is the same. Fails if the session's mesh is reused.

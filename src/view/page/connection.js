@@ -35,7 +35,7 @@ export class Connection {
     const message = JSON.parse(data);
     if (message.is === "scene") {
       if (this.isNew) {
-        const isRestarted = message.revision === 1 && message.file === this.file;
+        const isRestarted = message.revision === 1 && message.path === this.path;
         if (isRestarted && this.frame !== undefined && this.frame !== message.frame) this.toFrame = this.frame;
         if (isRestarted) this.toLook = this.lastLook;
         this.isNew = false;
@@ -51,7 +51,7 @@ export class Connection {
       if (this.toLook) this.look(this.toLook);
       this.toFrame = this.toLook = undefined;
       this.edits = message.edits;
-      this.file = message.file;
+      this.path = message.path;
       this.frame = message.frame;
       this.lastLook = message.look;
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Uploads files dropped onto the page, or chosen, and asks the server to open them.
 
+const kMostFiles = 256, kMostBytes = 2 ** 31;  // as the server takes
+
 // Files of a folder and its folders, as {name, file}; the name has the folders.
 async function filesOf(entry) {
   if (entry.isFile) return [{name: entry.fullPath.slice(1), file: await new Promise((done, failed) => entry.file(done, failed))}];
@@ -42,6 +44,8 @@ export class Drop {
   async open(files) {
     const seen = files.filter(({name}) => !name.split("/").some((part) => part.startsWith(".")));
     if (!seen.length) return;
+    const bytes = seen.reduce((sum, {file}) => sum + file.size, 0);
+    if (seen.length > kMostFiles || bytes > kMostBytes) return this.tell("a drop has at most 256 files and 2 GiB", false);
     const drop = String(Math.floor(Math.random() * 2 ** 52));
     for (const [index, {name, file}] of seen.entries()) {
       this.tell(`uploading ${name} (${index + 1} of ${seen.length})`);

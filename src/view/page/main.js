@@ -263,8 +263,8 @@ function takePoint(point) {
 // ------------------------------------------------------------------------------------------
 
 function takeScene(message) {
-  const isNewFile = state.file !== message.file;
-  state.file = message.file;
+  const isNewFile = state.path !== message.path;
+  state.path = message.path;
   if (isNewFile) ahead.clear();
   serverScene = {...message.scene, look: message.look};
   Object.assign(state, {revision: message.revision, edits: message.edits, command: message.command});
