@@ -179,7 +179,10 @@ void ViewRenderer::anchor(const Wanted& wanted) {
 }
 
 void ViewRenderer::draw(const Wanted& wanted) {
-  if (wanted.has_new_files) restart();
+  if (wanted.has_new_files) {  // the session notices, but an image of before must not be relit
+    prepared_.reset();
+    final_.reset();
+  }
   if (wanted.reference) anchor(wanted);
   Change change = anything;
   if (prepared_) {
