@@ -103,8 +103,10 @@ view.
 Drop an asset with its textures onto the page, or press "Open...", to view it: .glb, .gltf, .obj, .ply, .stl or .off. An
 environment map (.exr, .hdr) replaces the lights. Files dropped are stored in the folder opaline-view of the current
 folder, each drop in a folder of its own: at most 256 files and 2 GiB. Without a scene, the view starts with a ball.
+With --allow-outside, dropped assets are refused.
 
-The view follows changes of the scene file and its meshes on the disk, with the page's edits.
+The view follows changes of the scene file and its meshes on the disk, with the page's edits; not those of textures,
+material libraries and buffers.
 
 The view never writes to the scene file. "Save scene" writes another scene file in its folder, and "Render final" an
 image, under a name of your choice that does not exist yet. Both use the mesh files of the scene.
