@@ -47,7 +47,8 @@ struct Kills {
   int old = 0, fresh = 0, neither = 0;
 };
 
-/// In processes that are killed at moments spread over one and a half writes.
+/// In processes that are killed at moments spread over one and a half writes, and later ones while a busy machine lets none
+/// end.
 Kills kill_writers(const std::string& name, const Write& write, int times) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism,
                                        1);  // which outlives fork
@@ -60,7 +61,7 @@ Kills kill_writers(const std::string& name, const Write& write, int times) {
   const double one = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 5;
   const std::string fresh = bytes_of(path);
   Kills kills;
-  for (int i = 0; i < times; ++i) {
+  for (int i = 0; i < times || (kills.fresh == 0 && i < 6 * times); ++i) {
     put_bytes(path, old);
     const pid_t child = ::fork();
     if (child < 0) throw std::runtime_error("no child process");
