@@ -92,7 +92,7 @@ class ImageFiles:
     def own_file(self, image):
         if image.packed_file or image.is_dirty or image.source != "FILE" or image.file_format not in READABLE:
             return None
-        path = bpy.path.abspath(image.filepath, library=image.library)
+        path = image.filepath_from_user()
         return os.path.abspath(path) if os.path.isfile(path) else None
 
     def packed_file(self, image):

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/cancel_check.h"
-#include "image/solid_noise.h"
 #include "image/texture_file.h"
 #include "opaline/error.h"
 #include "scene/scene_properties.h"
@@ -38,83 +37,9 @@ TexturePlace texture_place(const Texture& texture, const SurfaceUv& at, const Fo
           side(footprint.y), on_whole_face && maps_uvs_unchanged(texture)};
 }
 
-/// One of the three projections of an image along an axis: two axes of the shape's space with their signs, for an image
-/// unmirrored from outside, and the weight.
-struct Projection {
-  std::size_t right, up;
-  double right_sign, up_sign, weight;
-};
-
-/// Weights by the fourth power of the normal's components.
-std::array<Projection, 3> projections(const Vec3d& normal) {
-  const auto side = [&](std::size_t c) { return normal[c] < 0 ? -1. : 1.; };
-  std::array<Projection, 3> all{{{2, 1, -side(0), 1, 0}, {0, 2, 1, -side(1), 0}, {0, 1, side(2), 1, 0}}};
-  double sum = 0;
-  for (std::size_t c = 0; c < 3; ++c) sum += all[c].weight = std::pow(normal[c], 4);
-  for (Projection& one : all) one.weight = sum > 0 ? one.weight / sum : 1. / 3;
-  return all;
-}
-
-TexturePlace projected(const Projection& along, double width, const SolidPlace& solid) {
-  const auto on_image = [&](const Vec3d& v) {
-    return std::array<float, 2>{float(along.right_sign * v[along.right] / width),
-                                float(-along.up_sign * v[along.up] / width)};
-  };
-  const auto [u, v] = on_image(solid.point);
-  return {u, v, on_image(solid.x), on_image(solid.y)};
-}
-
-double filter_width(const SolidPlace& solid) {
-  return std::sqrt(length(solid.x) * length(solid.y));
-}
-
-constexpr double kLeastWeight = 1e-3;  // least weight of a projection
-
-std::array<float, 4> solid_value(const Texture& texture, const SolidPlace& solid) {
-  if (const SolidNoise* noise = texture.source->noise()) return noise->at(solid.point, filter_width(solid));
-  std::array<float, 4> sum{};
-  float weights = 0;
-  for (const Projection& along : projections(solid.normal)) {
-    if (along.weight < kLeastWeight) continue;
-    const std::array<float, 4> texel =
-        texture.source->image()->at(projected(along, texture.triplanar_width, solid));
-    for (std::size_t c = 0; c < 4; ++c) sum[c] += float(along.weight) * texel[c];
-    weights += float(along.weight);
-  }
-  for (float& value : sum) value /= weights;
-  return sum;
-}
-
-/// Gradient of a channel of solid_value() in the space of the shape, 1/mm.
-Vec3d solid_gradient(const Texture& texture, const SolidPlace& solid) {
-  if (const SolidNoise* noise = texture.source->noise())
-    return noise->gradient(solid.point, filter_width(solid), texture.channel);
-  Vec3d sum;
-  for (const Projection& along : projections(solid.normal)) {
-    if (along.weight < kLeastWeight) continue;
-    const auto [right, down] =
-        texture.source->image()->slope(projected(along, texture.triplanar_width, solid), texture.channel);
-    sum[along.right] += along.right_sign * along.weight * double(right) / texture.triplanar_width;
-    sum[along.up] -= along.up_sign * along.weight * double(down) / texture.triplanar_width;
-  }
-  return sum;
-}
-
 std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Place& place) {
   if (is_solid(texture)) return solid_value(texture, place.solid);
   return texture.source->image()->at(texture_place(texture, *place.uv, place.footprint, place.on_whole_face));
-}
-
-/// The space of a shape; a transform without an inverse gives that of the world.
-SolidSpace solid_space(const Transform& to_world) {
-  const Vec3d across_x = cross(to_world.y, to_world.z), across_y = cross(to_world.z, to_world.x),
-              across_z = cross(to_world.x, to_world.y);
-  const double volume = dot(to_world.x, across_x);
-  SolidSpace space;
-  const Vec3d x = across_x / volume, y = across_y / volume, z = across_z / volume;
-  if (is_finite(x) && is_finite(y) && is_finite(z)) space = {x, y, z, {}};
-  space.origin = to_world.translation;
-  return space;
 }
 
 RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
@@ -226,12 +151,6 @@ Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& plac
   return (of_u * along_u + of_v * along_v) * float(texture.scale.x);
 }
 
-/// Gradient of the height in space, mm per mm.
-Vec3f solid_rise(const Texture& texture, const SolidSpace& space, const SolidPlace& solid) {
-  const Vec3d inside = solid_gradient(texture, solid);
-  return Vec3f((space.x * inside.x + space.y * inside.y + space.z * inside.z) * texture.scale.x);
-}
-
 /// Around +y, as turned on a lathe; where the normal is +y itself, along x.
 TangentFrame level_frame(const Vec3f& normal) {
   Vec3f tangent{normal.z, 0, -normal.x};
@@ -314,7 +233,9 @@ SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t 
   Place place{mesh, {}, footprint};
   place.on_whole_face = of_mesh_[mesh].has_whole_faces;
   if (of_mesh_[mesh].has_uv) place.uv = surface_uv(world_.meshes[mesh], triangle, u, v);
-  if (of_mesh_[mesh].space) place.solid = solid_place(of_mesh_[mesh], mesh, triangle, u, v, footprint);
+  if (of_mesh_[mesh].space)
+    place.solid =
+        solid_place(*of_mesh_[mesh].space, world_, mesh, triangle, u, v, {footprint.x, footprint.y});
   if (of_mesh_[mesh].has_tangents) place.tangent = surface_tangent(world_.meshes[mesh], triangle, u, v);
   if (of_mesh_[mesh].has_colors) {
     place.color = surface_color(world_.meshes[mesh], triangle, u, v);
@@ -322,21 +243,6 @@ SurfaceTextures::Place SurfaceTextures::place(std::uint32_t mesh, std::uint32_t 
       place.color = RgbF(component_max(at_wavelengths(wavelengths_->from_rgb, Rgb(place.color)), Rgb{}));
   }
   return place;
-}
-
-SolidPlace SurfaceTextures::solid_place(const OfMesh& own, std::uint32_t mesh, std::uint32_t triangle,
-                                        float u, float v, const Footprint& footprint) const {
-  const Mesh& surface = world_.meshes[mesh];
-  std::array<Vec3d, 3> corners;
-  for (std::size_t k = 0; k < 3; ++k)
-    corners[k] = out_of_world(world_, Vec3d(surface.positions[surface.triangles[triangle][k]]));
-  const auto inside = [&](const Vec3d& v_world) {
-    return Vec3d{dot(own.space->x, v_world), dot(own.space->y, v_world), dot(own.space->z, v_world)};
-  };
-  const Vec3d side_u = inside(corners[1] - corners[0]), side_v = inside(corners[2] - corners[0]);
-  const Vec3d corner = inside(corners[0] - own.space->origin);
-  return {corner + side_u * double(u) + side_v * double(v), normalized(cross(side_u, side_v)),
-          inside(Vec3d(footprint.x) * world_.unit), inside(Vec3d(footprint.y) * world_.unit)};
 }
 
 SurfaceTint SurfaceTextures::tint(const Place& place) const {

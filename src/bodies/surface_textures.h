@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "bodies/solid_textures.h"
 #include "cache/stage_key.h"
 #include "geometry/surface_point.h"
 #include "geometry/surface_uv.h"
@@ -20,12 +21,6 @@ struct Footprint {
   Vec3f x{}, y{};
 };
 
-/// Position in the space of the shape, mm, for textures without UVs.
-struct SolidPlace {
-  Vec3d point{}, normal{};  ///< normal: unit, of the triangle
-  Vec3d x{}, y{};           ///< sides of the footprint
-};
-
 /// Factors on light as it enters a surface and as it leaves.
 struct SurfaceTint {
   RgbF entering{1, 1, 1}, leaving{1, 1, 1};
@@ -34,12 +29,6 @@ struct SurfaceTint {
 /// Factors on a textured medium's properties at a point, relative to their means; constant properties are 1.
 struct MediumFactors {
   RgbF color{1, 1, 1}, radius{1, 1, 1};
-};
-
-/// Between the world and the space of a shape.
-struct SolidSpace {
-  Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< rows of the linear map to the space of the shape
-  Vec3d origin{};                            ///< origin of that space, mm
 };
 
 class SurfaceTextures {
@@ -91,8 +80,6 @@ class SurfaceTextures {
     const Medium* partly_opaque = nullptr;
     std::optional<SolidSpace> space{};  ///< for textures without UVs
   };
-  SolidPlace solid_place(const OfMesh& own, std::uint32_t mesh, std::uint32_t triangle, float u, float v,
-                         const Footprint& footprint) const;
 
   const World& world_;
   std::vector<OfMesh> of_mesh_;

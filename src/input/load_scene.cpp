@@ -161,8 +161,7 @@ Scene read_scene(const Document& document) {
   const ObjectReader reader(Value(document, document.root, "", root), "scene");
   Scene scene;
   scene.file = document.file;
-  const auto unit = reader.find("mm_per_unit");
-  const double mm_per_unit = scene.mm_per_unit = unit ? unit->number() : 1;
+  const double mm_per_unit = scene.mm_per_unit = document.mm_per_unit;
   if (const auto media = reader.find("media"))
     for (const Value& medium : media->members()) {
       scene.media.push_back(read_medium(medium, mm_per_unit));

@@ -25,7 +25,8 @@ FileWatch::FileWatch(boost::asio::io_context& io, Changed changed)
 }
 
 void FileWatch::watch(const std::vector<std::string>& files) {
-  if (!events_.is_open()) return;
+  if (!events_.is_open() || files == files_) return;
+  files_ = files;
   std::map<int, std::map<std::string, std::string>> paths;
   for (const std::string& file : files) {
     std::error_code missing;

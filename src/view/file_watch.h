@@ -31,6 +31,7 @@ class FileWatch {
   boost::asio::posix::stream_descriptor events_;
   boost::asio::steady_timer timer_;
   Changed changed_;
+  std::vector<std::string> files_;
   std::map<int, std::map<std::string, std::string>> paths_;  // by the watch of their folder, and by name
   std::set<std::string> news_;
   std::array<char, 4096> bytes_{};

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compares F12 by Cycles and by opaline with random walks, on a skin head and a marble bunny.
 
-usage: python3 src/blender/compare.py IMAGE.png [PROGRAM]
+usage: python3 tests/blender/compare_with_cycles.py IMAGE.png [PROGRAM]
 
 Runs in a Python with `bpy`. Prints the error of both engines against `--method volume` and writes their images side by side:
 Cycles on the left, opaline on the right.
@@ -19,11 +19,10 @@ import zlib
 import bpy
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "src"))
 sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-import blender as addon  # noqa: E402
+from blender_scenes import ROOT, prepare_output, register  # noqa: E402  finds the add-on, too
 from blender import exr_file, properties  # noqa: E402
 
 SIZE, SHOWN = 320, 280  # pixels of a render, and of its copy in the PNG
@@ -129,15 +128,9 @@ def render(scene, engine, method="auto"):
         scene.cycles.filter_width = 1
     folder = tempfile.mkdtemp(prefix="opaline_compare_")
     try:
-        settings = scene.render.image_settings
-        if hasattr(settings, "media_type"):
-            settings.media_type = "MULTI_LAYER_IMAGE"
-        settings.file_format, settings.color_depth, settings.exr_codec = "OPEN_EXR_MULTILAYER", "32", "ZIP"
-        if hasattr(settings, "use_exr_interleave"):
-            settings.use_exr_interleave = True  # one part
-        scene.render.filepath = os.path.join(folder, "image")
+        output = prepare_output(scene, folder)
         bpy.ops.render.render(write_still=True)
-        return exr_file.read_exr(os.path.join(folder, "image.exr")).layer("ViewLayer.Combined", "RGBA")
+        return exr_file.read_exr(output).layer("ViewLayer.Combined", "RGBA")
     finally:
         shutil.rmtree(folder)
 
@@ -198,8 +191,9 @@ def write_png(path, rows):
 
 
 def main():
-    properties.DefaultPreferences.program = sys.argv[2] if len(sys.argv) > 2 else str(ROOT / "build/src/opaline")
-    addon.register()
+    register()
+    if len(sys.argv) > 2:
+        properties.DefaultPreferences.program = sys.argv[2]
     rows = []
     for kind in ("head", "bunny"):
         scene = make_scene(kind)
