@@ -9,6 +9,9 @@
 
 namespace opaline {
 
+/// Order of the error in the number of samples.
+inline constexpr double kUsualSlope = .8;
+
 struct SettingsSearch {
   Session& session;
   Scene scene;  ///< with the settings tried

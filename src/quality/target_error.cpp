@@ -24,9 +24,6 @@ constexpr double kLeastGrowth = 2.5, kBeyond = 1.25, kMostGrowth = 4;
 constexpr double kMostNoise = 0.5;
 constexpr int kMostLightSamples = 65536;
 constexpr int kMostSteps = 12;
-// Pixels of the small images: enough for a mean.
-constexpr double kProbePixels = 64 * 64;
-constexpr std::size_t kEnoughPoints = 1500;
 
 /// Usual number of samples for the target.
 double first_guess(const SettingsSearch& search, double fewest, double target) {
@@ -90,8 +87,8 @@ void choose_evaluator(SettingsSearch& search, double target) {
 
 TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor) {
   SettingsSearch search{session, scene, monitor};
-  search.probe_pixels = kProbePixels;
-  search.enough_points = kEnoughPoints;
+  search.probe_pixels = kTargetPixels;
+  search.enough_points = kTargetPoints;
   search.begin(tolerance_for(target));
   const double fewest = std::min(kFewestTargetSamples, search.most_samples),
                start = first_guess(search, fewest, target);

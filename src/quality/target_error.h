@@ -55,6 +55,10 @@ std::vector<std::string> chosen_overrides(const Session& session, std::size_t en
 /// Maximum shadow rays from all samples to a light, some minutes.
 inline constexpr double kMostShadowRays = 0x1p31;
 
+/// Pixels of a probe, enough for a mean, and sufficient lit translucent points in it.
+inline constexpr double kTargetPixels = 64 * 64;
+inline constexpr std::size_t kTargetPoints = 1500;
+
 /// Minimum samples of all bodies together, unless settings.max_samples is lower.
 inline constexpr double kFewestTargetSamples = 2500;
 

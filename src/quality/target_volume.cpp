@@ -22,8 +22,6 @@ constexpr double kLeastShare = .3;
 constexpr double kCoarsest = 3, kFinest = .25;  // cells, mean free paths
 constexpr double kMargin = .85;                 // margin of the target error: two steps cost more than one
 constexpr int kMostSteps = 6, kMostLightSamples = 4096;
-constexpr double kProbePixels = 64 * 64;
-constexpr std::size_t kEnoughPoints = 1500;
 constexpr double kQuickCells = 3e5;  // solved in about a second
 
 /// Model error of the worst body; none if a mesh is open, crossed by light almost without scattering, or too
@@ -59,8 +57,8 @@ class VolumeSearch {
  public:
   VolumeSearch(Session& session, Scene scene, Monitor* monitor)
       : search_{session, std::move(scene), monitor} {
-    search_.probe_pixels = kProbePixels;
-    search_.enough_points = kEnoughPoints;
+    search_.probe_pixels = kTargetPixels;
+    search_.enough_points = kTargetPoints;
     search_.begin(search_.scene.settings.tolerance);
   }
 

@@ -17,8 +17,8 @@
 namespace opaline {
 namespace {
 
-constexpr double kFewest = 2500;             // samples
-constexpr std::size_t kEnoughPoints = 1000;  // enough points of a small image
+constexpr double kFewestSamples = 2500;      // samples
+constexpr std::size_t kBudgetPoints = 1000;  // enough points of a small image
 constexpr double kFirstTolerance = .01;
 // Maximum factor of the samples of a small image; these cost a few per cent then.
 constexpr double kBeyond = 8;
@@ -26,7 +26,6 @@ constexpr double kBeyond = 8;
 constexpr double kWorthPlacing = 1.25;
 // Least fraction of the time in shading for trying the surface cache.
 constexpr double kWorthCaching = 0.3;
-constexpr double kUsualSlope = 0.8;
 
 /// Tried number of samples, with its small image. CPU, s.
 struct Tried {
@@ -58,7 +57,7 @@ class BudgetSearch {
  public:
   BudgetSearch(Session& session, Scene scene, double seconds, Monitor* monitor)
       : search_{session, std::move(scene), monitor}, seconds_(seconds) {
-    search_.enough_points = kEnoughPoints;
+    search_.enough_points = kBudgetPoints;
   }
 
   TimeBudget run(const FinishPicture& finish);
@@ -93,7 +92,7 @@ class BudgetSearch {
 };
 
 void BudgetSearch::try_first(const FinishPicture& finish) {
-  const double samples = std::min(kFewest, search_.most_samples / 4);
+  const double samples = std::min(kFewestSamples, search_.most_samples / 4);
   search_.place(samples);
   Image picture = search_.first_picture();
   Tried& first = tried_.emplace_back(tried(search_.session, samples, std::move(picture)));

@@ -11,11 +11,11 @@
 namespace opaline {
 namespace {
 
-constexpr double kFarthest = 3;     // mean free paths
-constexpr double kSameSheet = .9;   // least agreement of normals of one sheet
-constexpr double kWeight = 6;       // per fraction of light from another part of the surface
-constexpr double kLeastLeft = .02;  // share of a path to follow
-constexpr double kLeastReflected = .05;
+constexpr double kFarthestEdge = 3;  // mean free paths
+constexpr double kSameSheet = .9;    // least agreement of normals of one sheet
+constexpr double kWeight = 6;        // per fraction of light from another part of the surface
+constexpr double kLeastLeft = .02;   // share of a path to follow
+constexpr double kLeastBeam = .05;
 constexpr double kLeastWeight = .1;
 constexpr double kOfThin = 4;   // subtracted, per share of light from an opposite sheet
 constexpr int kLegs = 2;        // pieces of a path, reflected at the surface once
@@ -79,7 +79,7 @@ bool EdgeExitance::is_near_other_sheet(std::size_t element) const {
   const std::uint32_t cell = space_.attached[element].cell;
   if (cell == DiffusionGrid::kNone) return false;
   const BoundaryElement& from = space_.boundary.elements[element];
-  const double farthest = kFarthest * longest_;
+  const double farthest = kFarthestEdge * longest_;
   const std::array<Vec3d, 3> frame = frame_of(from.normal);
   for (std::size_t k = kPaths - kOfRing; k < kPaths; ++k) {
     const Way way = path_from(from, frame, k);
@@ -138,8 +138,8 @@ void EdgeExitance::follow(std::size_t sample, Paths& paths) const {
         add(share, start + .5 * step);
         if (emitted.x + emitted.y + emitted.z > kOfNode * weight) end_node(at);
       };
-      const BodyPaths::End end = paths_.follow(way, 0, kFarthest * longest_, cell, emit);
-      if (!end.exit) add(left, kFarthest * longest_);
+      const BodyPaths::End end = paths_.follow(way, 0, kFarthestEdge * longest_, cell, emit);
+      if (!end.exit) add(left, kFarthestEdge * longest_);
       end_node(end.cell);
       if (!end.exit) break;
       const float agreement_there = agreement(from, end.exit->element);
@@ -168,7 +168,7 @@ EdgeExitance::Entry EdgeExitance::back_to_sheet(const Vec3d& position, const Vec
     const Vec3d normal(plane.normal);
     length = std::max(0., dot(space_.in_lattice(plane.position) - position, normal) /
                               std::max(BodyPaths::kLeastCosine, -dot(along, normal)));
-    if (length * space_.lattice.cell > kFarthest * longest_) return {};
+    if (length * space_.lattice.cell > kFarthestEdge * longest_) return {};
     const Vec3d entry = position - along * length;
     const std::uint32_t before = element;
     double nearest = INFINITY;
@@ -240,7 +240,7 @@ std::vector<std::vector<EdgeExitance::Beam>> EdgeExitance::beams_of(const Paths&
         beam.mirror = other;
         most = std::max(most, beam.share);
       }
-      if (most > kLeastReflected) beams.insert(beams.end() - 1, std::move(reflected));
+      if (most > kLeastBeam) beams.insert(beams.end() - 1, std::move(reflected));
     }
   }
   return beams;

@@ -45,10 +45,11 @@ struct ViewDrops : ::testing::Test {
   }
   std::vector<std::string> left() const {
     std::vector<std::string> files;
-    if (std::filesystem::exists(dropped))
-      for (const auto& entry : std::filesystem::recursive_directory_iterator(dropped))
-        if (entry.is_regular_file())
-          files.push_back(std::filesystem::relative(entry.path(), dropped).string());
+    std::error_code vanished;  // by the server meanwhile
+    for (std::filesystem::recursive_directory_iterator entry(dropped, vanished), end;
+         !vanished && entry != end; entry.increment(vanished))
+      if (entry->is_regular_file(vanished))
+        files.push_back(std::filesystem::relative(entry->path(), dropped, vanished).string());
     std::ranges::sort(files);
     return files;
   }

@@ -18,8 +18,8 @@ namespace opaline {
 namespace {
 
 constexpr std::uint64_t kVersion = 1;
-constexpr double kLeastTolerance = .02;  // a finer sum changes the error by less than 0.01 %
-constexpr double kBytesOfSample = 300;   // while the tree is built; bench_plan
+constexpr double kLeastTolerance = .02;      // a finer sum changes the error by less than 0.01 %
+constexpr double kBytesOfLightSample = 300;  // while the tree is built; bench_plan
 
 struct ImageSpaceState : MethodState {
   static constexpr Method kMethod = Method::image_space;
@@ -112,7 +112,7 @@ void ImageSpaceMethod::plan(const PlanningInput& input, BodyPlan& body,
 
 BodyMemory ImageSpaceMethod::memory(const PlanningInput& input, const BodyPlan& body) const {
   BodyMemory memory{.evaluated_samples = body.samples};
-  memory.kept = std::size_t(kBytesOfSample * double(body.samples * input.lights.size()));
+  memory.kept = std::size_t(kBytesOfLightSample * double(body.samples * input.lights.size()));
   const Bounds box = bounds(input.world, body.meshes);
   const Vec3d size = box.high - box.low;
   const double spacing = body.spacing / input.world.unit,
