@@ -112,8 +112,9 @@ double budget_left(const RenderArguments& arguments, const Scene& scene) {
          double(1 + scene.other_wavelengths.size());
 }
 
-Plan announced_plan(const RenderArguments& arguments, const Session& session) {
+Plan announced_plan(const RenderArguments& arguments, const Session& session, std::size_t more_bytes) {
   Plan plan = session.plan();
+  plan.bytes += more_bytes;
   const Settings& settings = session.scene().settings;
   if (arguments.time_budget && settings.method == Method::direct && !settings.entry_samples &&
       !settings.until_error)

@@ -32,7 +32,8 @@ RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache*
 FinishPicture trial_writing(const RenderArguments& arguments, const Film& film);
 
 /// The session's limit for print_plan: maximum time of `direct` with --time-budget.
-Plan announced_plan(const RenderArguments& arguments, const Session& session);
+/// in    more_bytes: memory in addition to the session's plan
+Plan announced_plan(const RenderArguments& arguments, const Session& session, std::size_t more_bytes);
 
 /// A warning for each other option without effect in a scene without lights.
 void warn_of_unlit_options(const RenderArguments& arguments, const Scene& scene);

@@ -29,6 +29,7 @@
 #include "plan/make_plan.h"
 #include "plan/picture_warnings.h"
 #include "plan/placement_warnings.h"
+#include "plan/seen_pixels.h"
 #include "plan/shapes_inside.h"
 #include "render/layers.h"
 #include "render/render.h"
@@ -218,6 +219,16 @@ void check_denoising(const RenderArguments& arguments, const Scene& scene) {
   denoiser_name();
 }
 
+bool holds_view(const RenderArguments& arguments, bool is_frame) {
+  return is_frame || is_named(arguments.layers, kLightGroups);
+}
+
+std::size_t bytes_of_view(const Session& session) {
+  const Scene& scene = session.scene();
+  const std::vector<Light> lights = recentred_lights(scene, session.world());
+  return held_view_bytes(scene.film, lights.size(), seen_pixels(scene, lights, session.world()));
+}
+
 /// Gives the session its scene and returns the scene's hash; none if the frame exists already.
 std::optional<std::string> load(StageRunner& stages, const RenderArguments& arguments, Session& session,
                                 std::optional<int> frame) {
@@ -227,7 +238,7 @@ std::optional<std::string> load(StageRunner& stages, const RenderArguments& argu
                              : scene_hash(arguments.scene, arguments.overrides, scene);
     if (frame && is_rendered(arguments, hash, *frame)) return std::nullopt;
     if (frame) session.expect_pictures(scene.camera_frames);
-    session.hold_view(frame.has_value() || is_named(arguments.layers, kLightGroups));
+    session.hold_view(holds_view(arguments, frame.has_value()));
     session.edit(std::move(scene));
     return hash;
   });
@@ -243,7 +254,7 @@ double seconds_of_trial(const Session& session) {
 /// Chooses open settings, and prints the plan.
 /// error Error{bad_input}: options are incompatible, or exceed the memory
 KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session& session,
-                 const Shared& shared) {
+                 const Shared& shared, bool is_frame) {
   const Scene& scene = session.scene();
   name_method(arguments, session);
   check_outputs_are_no_inputs(arguments, scene);
@@ -251,16 +262,18 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   check_denoising(arguments, scene);
   check_layers(arguments.layers, scene);
   check_precompute(arguments, scene, session.plan());
-  const std::size_t layer_bytes = asked_layer_bytes(arguments.layers, scene);
-  check_memory(scene, session.plan(), layer_bytes);
+  const std::size_t more_bytes = asked_layer_bytes(arguments.layers, scene) +
+                                 (holds_view(arguments, is_frame) ? bytes_of_view(session) : 0);
+  check_memory(scene, session.plan(), more_bytes);
   if (arguments.target_error) print_trial(arguments.log, seconds_of_trial(session));
   KnownErrors errors = choose_settings(stages, arguments, session);
   if (shared.last_plan->empty()) {
     warn_of_unlit_options(arguments, scene);
     warn_of_unused_media(arguments.log, arguments.overrides, scene);
   }
-  print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session), shared.last_plan);
-  check_memory(scene, session.plan(), layer_bytes);  // with the chosen settings
+  print_plan(arguments.log, scene, session.world(), announced_plan(arguments, session, more_bytes),
+             shared.last_plan);
+  check_memory(scene, session.plan(), more_bytes);  // with the chosen settings
   return errors;
 }
 
@@ -348,7 +361,7 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
     return false;
   }
   const Scene& scene = session.scene();
-  KnownErrors errors = plan(stages, arguments, session, shared);
+  KnownErrors errors = plan(stages, arguments, session, shared, frame.has_value());
   Shading shading = make_picture(stages, arguments, session, shared, frame.has_value());
   std::optional<Error> stopped;  // by Ctrl-C during the error measurement; the image is complete
   try {

@@ -37,10 +37,14 @@ bool fits(const Film& film, std::size_t bytes) {
          kMostHeldBytes;
 }
 
+// Least bytes of a cached camera ray.
+std::size_t bytes_of_ray(std::size_t lights) {
+  return sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) + 2 * sizeof(float) * lights;
+}
+
 // Cache of earlier images and for this one, if memory allows.
 HeldView* view_of(const RenderInput& input, std::size_t tiles) {
-  const std::size_t least = sizeof(HeldView::CameraHit) + sizeof(std::uint32_t) +
-                            2 * sizeof(float) * recentred_lights(input.scene, input.world).size();
+  const std::size_t least = bytes_of_ray(recentred_lights(input.scene, input.world).size());
   if (input.view == nullptr || !fits(input.scene.film, least)) return nullptr;
   input.view->tiles.resize(tiles);
   input.view->has_room = fits(input.scene.film, least + sizeof(SurfacePoint));
@@ -48,6 +52,15 @@ HeldView* view_of(const RenderInput& input, std::size_t tiles) {
 }
 
 }  // namespace
+
+std::size_t held_view_bytes(const Film& film, std::size_t lights, std::size_t seen) {
+  std::size_t of_hit = bytes_of_ray(lights) - sizeof(HeldView::CameraHit);
+  if (!fits(film, bytes_of_ray(lights))) return 0;
+  if (fits(film, bytes_of_ray(lights) + sizeof(SurfacePoint))) of_hit += sizeof(SurfacePoint);
+  const Rectangle part = rendered_part(film);
+  const std::size_t pixels = std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0);
+  return std::size_t(film.samples_per_pixel) * (pixels * sizeof(HeldView::CameraHit) + seen * of_hit);
+}
 
 RenderResult render(const RenderInput& input) {
   const Film& film = input.scene.film;

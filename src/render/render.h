@@ -26,6 +26,11 @@ Rectangle rendered_part(const Film& film);
 inline constexpr std::size_t kMostHeldBytes = std::size_t(256) << 20;
 inline constexpr std::size_t kMostCoatBytes = std::size_t(256) << 20;  ///< in addition, for HeldView::Coat
 
+/// Memory of the view cached between frames, bytes; without reflections and gathered hits. 0: larger than kMostHeldBytes,
+/// not cached
+/// in    lights: number of lights; seen: pixels with a hit
+std::size_t held_view_bytes(const Film& film, std::size_t lights, std::size_t seen);
+
 /// Radiance towards the camera.
 /// `hierarchical`: translucent surfaces emit M_o Ft(omega_o) / (pi (1 - F_bar)) with M_o from the trees;
 /// `lambert`: the same with M_o = total diffuse reflectance x E at the point itself, the limit of a vanishing

@@ -291,9 +291,10 @@ struct PlannedMemory {
   double planned = 0, taken = 0;  // bytes
 };
 
-PlannedMemory planned_memory(const std::string& scene, const std::vector<std::string>& options) {
+PlannedMemory planned_memory(const std::string& scene, const std::vector<std::string>& options,
+                             const std::string& name = "a.exr") {
   const SceneFolder folder;
-  std::vector<std::string> arguments{"render", scene, "-o", folder.file("a.exr"), "--log", "json"};
+  std::vector<std::string> arguments{"render", scene, "-o", folder.file(name), "--log", "json"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const auto events = events_of(run_program(arguments).out);
   return {event_of(events, "plan")["memory_bytes"], events.back()["peak_memory_bytes"]};
@@ -319,6 +320,14 @@ TEST(CliRender, PlansTheMemoryItTakes) {
     EXPECT_LE(memory.taken, memory.planned) << job[0];
     EXPECT_LE(memory.planned, 1.5 * memory.taken) << job[0];
   }
+}
+
+// Claim: so it is for frames, as they share the view of the camera. Fails if: the view is left out (1.17 of the plan is taken).
+TEST(CliRender, PlansTheMemoryOfFrames) {
+  const PlannedMemory memory = planned_memory(std::string(OPALINE_SCENES_DIR) + "/bunny-marble.json",
+                                              {"--frames", "1-2", "--method", "lambert"}, "a.##.exr");
+  EXPECT_LE(memory.taken, memory.planned);
+  EXPECT_LE(memory.planned, 1.5 * memory.taken);
 }
 
 // Claim: so it is of random walks in plates whose voxels are many. Tolerance: 1.5. Fails if: voxels of free distances are
