@@ -67,6 +67,17 @@ std::size_t walks_for(const ProfileRequest& request, std::span<const SlabLayer> 
                                 kMostWalks));  // 3: entry and exit
 }
 
+SlabWalks empty_walks(const HomogeneousMedium& medium) {
+  SlabWalks walks;
+  double low = 0;
+  for (const double high : default_radii(medium)) {
+    walks.back.rings.push_back({.low = low, .high = high, .share = {}, .within = {}, .profile = {}});
+    low = high;
+  }
+  walks.through.rings = walks.back.rings;
+  return walks;
+}
+
 }  // namespace
 
 ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor) {
@@ -81,6 +92,11 @@ ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor) 
     ProfiledChannel channel{name, medium, {}, models_of(medium, layers, request.thickness), {}, {}};
     if (layers.size() > 1)
       channel.layered_diffusion = layered_exitance(flat(layers), boundary_mismatch(request.eta), 0);
+    if (request.walks == std::size_t(0)) {
+      channel.diffuse = channel.normal = empty_walks(medium);
+      report.channels.push_back(std::move(channel));
+      continue;
+    }
     LaboratorySettings settings;
     settings.walks = walks_for(request, layers, 2 * count);
     settings.monitor = &monitor;

@@ -28,7 +28,8 @@ struct ProfileRequest {
   double eta = 1.3;
   double g = 0;                                                ///< mean cosine of the walks at equal sigma_s'
   double thickness = std::numeric_limits<double>::infinity();  ///< mm; infinite: a half space
-  std::optional<std::size_t> walks;  ///< per channel and angle of incidence; none: by a limit on collisions
+  /// Per channel and angle of incidence; none: by a limit on collisions; 0: models only, with empty walks in default_radii.
+  std::optional<std::size_t> walks;
   std::uint64_t seed = 1;
 };
 
