@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes, instances, units and time of USD files, by the images of their conversions."""
+import json
+
 import numpy as np
 import pytest
 
@@ -74,14 +76,14 @@ def SphereLight "Key"
 
 def test_faces_of_all_kinds():
     """Claim: convex and concave polygons keep their area, and triangles their face. By hand: an L of area 3, a quad with a
-    reflex corner of area 1, a triangle of 1/2; a face of two corners has none. Fails if: a fan crosses a notch."""
+    reflex corner of area 3/2, a triangle of 1/2; a face of two corners has none. Fails if: a fan crosses a notch."""
     shape = np.array([(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2), (0, 0), (2, 0), (1, 0.5), (0, 2)], float)[:, ::-1]
     points = np.concatenate([shape, np.zeros((len(shape), 1))], axis=1)
-    counts, vertices = np.array([6, 2, 4, 3]), np.array([0, 1, 2, 3, 4, 5, 0, 1, 8, 9, 6, 7, 0, 2, 3])
+    counts, vertices = np.array([6, 2, 4, 3]), np.array([0, 1, 2, 3, 4, 5, 0, 1, 7, 8, 9, 6, 0, 2, 3])
     corners, faces = polygons.triangulate(points, counts, vertices)
     places = points[vertices[corners]]
     areas = np.linalg.norm(np.cross(places[:, 1] - places[:, 0], places[:, 2] - places[:, 0]), axis=1) / 2
-    assert np.bincount(faces, areas, 4) == pytest.approx([3, 0, 1, 0.5])
+    assert np.bincount(faces, areas, 4) == pytest.approx([3, 0, 1.5, 0.5])
 
 
 def test_holes_orientation_and_subsets(tmp_path):
@@ -168,6 +170,49 @@ def test_visible_prims_at_a_time(tmp_path):
         shapes = keys_of(tmp_path, body, head=head, time=time)["shapes"]
         assert [shape["name"] for shape in shapes] == ["Cube"]
         assert shapes[0]["transform"][0]["matrix"][0] == pytest.approx([1, 0, 0, x])
+
+
+def test_poses(tmp_path):
+    """Claim: a skinned mesh has its pose at the time, between two keys too. By hand: a joint moves from 0 to 9 in 9 frames. Fails if:
+    the rest pose is kept, or the nearest key is taken."""
+    body = """
+def SkelRoot "Root" (prepend apiSchemas = ["SkelBindingAPI"])
+{
+    def Skeleton "Bones" (prepend apiSchemas = ["SkelBindingAPI"])
+    {
+        uniform token[] joints = ["a"]
+        uniform matrix4d[] bindTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))]
+        uniform matrix4d[] restTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))]
+        rel skel:animationSource = </Root/Walk>
+    }
+    def SkelAnimation "Walk"
+    {
+        uniform token[] joints = ["a"]
+        float3[] translations.timeSamples = { 1: [(0, 0, 0)], 10: [(9, 0, 0)] }
+        quatf[] rotations = [(1, 0, 0, 0)]
+        half3[] scales = [(1, 1, 1)]
+    }
+    def Mesh "Skin" (prepend apiSchemas = ["SkelBindingAPI"])
+    {
+        int[] faceVertexCounts = [3]
+        int[] faceVertexIndices = [0, 1, 2]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+        uniform token subdivisionScheme = "none"
+        rel skel:skeleton = </Root/Bones>
+        int[] primvars:skel:jointIndices = [0, 0, 0] (elementSize = 1 interpolation = "vertex")
+        float[] primvars:skel:jointWeights = [1, 1, 1] (elementSize = 1 interpolation = "vertex")
+    }
+}
+"""
+    head = 'metersPerUnit = 1\n    upAxis = "Y"\n    startTimeCode = 1\n    endTimeCode = 10'
+    for time, x in ((None, 0), (5.5, 4.5), (10, 9)):
+        path, losses = converted(tmp_path, body, ".glb", head=head, time=time)
+        assert losses == []
+        data = path.read_bytes()
+        length = int.from_bytes(data[12:16], "little")
+        document = json.loads(data[20:20 + length])
+        position = document["accessors"][document["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]
+        assert (position["min"][0], position["max"][0]) == pytest.approx((x, x + 1))
 
 
 def test_normals_and_cages(tmp_path):

@@ -25,6 +25,23 @@ def factor_of(texture):
     return scale if isinstance(scale, list) else [scale] * 3
 
 
+def decoded(values):
+    """Linear values of sRGB values."""
+    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+
+
+def encoded(values):
+    """sRGB values of linear values."""
+    return np.where(values <= 0.0031308, values * 12.92, 1.055 * np.maximum(values, 0) ** (1 / 2.4) - 0.055)
+
+
+def numbers_of(texture):
+    """Texels of a texture of numbers, without its scale: height x width x 3. Raises opaline.Error for other formats."""
+    linear = pixels_of(texture["texture"])
+    is_float = texture["texture"].path.rstrip("]").lower().endswith((".exr", ".hdr"))
+    return linear if is_float or texture.get("color_space") == "srgb" else encoded(linear)
+
+
 def pixels_of(picture):
     """Linear pixels of an image as opaline reads it: height x width x 3."""
     from .. import read_image
@@ -99,8 +116,9 @@ class GltfMaterials:
             self.lose("indices of refraction below 1")
         elif ior != 1.5:
             self.extensions["KHR_materials_ior"] = {"ior": ior}
-        if keys.get("specular_weight", 1.0) != 1:
-            self.extensions["KHR_materials_specular"] = {"specularFactor": keys["specular_weight"]}
+        weight = keys.get("specular_weight", 1.0 if "specular_roughness" in keys else 0.0)  # 0: diffuse alone
+        if weight != 1:
+            self.extensions["KHR_materials_specular"] = {"specularFactor": weight}
         if "fuzz_weight" in keys:
             self.extensions["KHR_materials_sheen"] = {
                 "sheenColorFactor": [part * keys["fuzz_weight"] for part in keys["fuzz_color"]],
@@ -123,15 +141,15 @@ class GltfMaterials:
 
     def packed(self, given):
         """PNG of the channels of textures, or None."""
-        from .. import image
+        from .. import Error, image
         channels = []
         for texture, target in given:
             try:
-                source = pixels_of(texture["texture"])
-            except Exception as error:  # of any image library
-                self.losses.add(f"textures in another format than EXR, HDR and PNG ({error})", self.owner)
+                source = numbers_of(texture)
+            except Error:
+                self.lose("textures of roughness and metalness other than PNG, EXR and HDR, not packed in green and blue")
                 return None
-            channels.append((source[..., "rgb".find(texture.get("channel", "r"))], "rgb".find(target)))
+            channels.append((source[..., "rgba".find(texture.get("channel", "r"))], "rgb".find(target)))
         height, width = max((channel.shape for channel, _ in channels), key=lambda size: size[0])
         pixels = np.ones((height, width, 3), np.float32)
         for channel, target in channels:
@@ -139,7 +157,7 @@ class GltfMaterials:
             pixels[..., target] = channel[rows[:, None], columns]
         with tempfile.TemporaryDirectory(prefix="opaline-") as folder:
             path = os.path.join(folder, "packed.png")
-            image(pixels, ["R", "G", "B"]).write(path, view="srgb")
+            image(decoded(pixels).astype(np.float32), ["R", "G", "B"]).write(path, view="srgb")
             with open(path, "rb") as file:
                 return file.read()
 

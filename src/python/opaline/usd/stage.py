@@ -46,11 +46,17 @@ def to_y_up(stage):
 
 
 def pose_skins(stage, time):
-    """Replaces the points of skinned meshes by those of their pose; rest poses stay without an animation."""
+    """Replaces the points of skinned meshes by those of their pose at a time."""
     roots = [prim for prim in stage.Traverse() if prim.IsA(UsdSkel.Root)]
-    if not roots:
-        return
     code = stage.GetStartTimeCode() if time.IsEarliestTime() else time.GetValue()
+    for prim in stage.Traverse() if roots else []:
+        animation = UsdSkel.Animation(prim)
+        if not animation:
+            continue
+        for attribute in (animation.GetTranslationsAttr(), animation.GetRotationsAttr(), animation.GetScalesAttr(),
+                          animation.GetBlendShapeWeightsAttr()):
+            if attribute.ValueMightBeTimeVarying():
+                attribute.Set(attribute.Get(code), code)  # the only sample: baking reads samples alone
     for root in roots:
         UsdSkel.BakeSkinning(UsdSkel.Root(root), Gf.Interval(code, code))
 
