@@ -35,6 +35,7 @@ def image_node(file, more="", name="Image"):
 
 
 def write_png(path, pixels):
+    """Writes linear colours."""
     opaline.image(np.ascontiguousarray(pixels, np.float32), ["R", "G", "B"]).write(str(path), view="srgb")
 
 
@@ -145,14 +146,15 @@ def test_roughness_and_metalness_by_textures(tmp_path, checker, ending):
                                              "metalness": {"texture": "metal.png", "color_space": "linear", "channel": "b"}}],
                                  "lights": [{"type": "directional", "direction": direction, "irradiance": 3}]}))
     expected = rendered(scene)
-    assert np.abs(rendered(path) - expected)[..., :3].max() < 2e-3 * expected[..., :3].max()
+    difference = np.abs(rendered(path) - expected)[:, 10:38, :3]  # a mesh's texture repeats at its edges
+    assert difference.max() < 2e-3 * expected[..., :3].max()
 
 
 def test_a_normal_map(tmp_path):
     """Claim: a flat map tilted towards +u by 30 degrees darkens and brightens the card as its cosine. By hand: texel 0.5 + n / 2.
-    Tolerance: 2 %, eight bits. Fails if: the map is read as sRGB, or its scale and bias are taken for slopes."""
+    Tolerance: 2 %, eight bits, encoded as sRGB by the writer. Fails if: the map is read as sRGB, or its scale and bias are taken for slopes."""
     normal = np.array([0.5, 0, np.sqrt(0.75)])
-    write_png(tmp_path / "normals.png", np.broadcast_to(((normal + 1) / 2), (8, 8, 3)))
+    write_png(tmp_path / "normals.png", np.broadcast_to(((normal + 1) / 2) ** 2.2, (8, 8, 3)))
     nodes = image_node("normals.png", 'token inputs:sourceColorSpace = "raw"\nfloat4 inputs:scale = (2, 2, 2, 1)\n'
                        'float4 inputs:bias = (-1, -1, -1, 0)')
     inputs = "float inputs:ior = 1"

@@ -89,7 +89,10 @@ def keys_of(tmp_path, body, **options):
 
 
 def rendered(scene, **overrides):
-    return opaline.render(scene, FILM | overrides).array
+    """R, G, B and alpha: height x width x 4."""
+    image = opaline.render(scene, FILM | overrides)
+    assert image.channels[:4] == ["R", "G", "B", "A"]
+    return image.array[..., :4]
 
 
 def triangles_of(faces):

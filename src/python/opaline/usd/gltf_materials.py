@@ -53,6 +53,15 @@ def pixels_of(picture):
         return np.array(image.color if "R" in image.channels else np.repeat(image.array[..., :1], 3, axis=2))
 
 
+def matched_albedo(color, ior):
+    """Albedo of an index-matched half space below a boundary, for its reflectance of transmitted light (Saunderson 1942).
+
+    glTF's multiscatter colour knows no boundary. Internal diffuse reflectance: Egan & Hilgeman 1973.
+    """
+    inside = -1.44 / ior**2 + 0.71 / ior + 0.668 + 0.0636 * ior if ior > 1 else 0.0
+    return [part / (1 - inside * (1 - part)) for part in color]
+
+
 class GltfMaterials:
     """Adds materials and their images to a file; each once."""
 
@@ -172,7 +181,7 @@ class GltfMaterials:
         self.extensions |= {
             "KHR_materials_volume": {"thicknessFactor": 1.0, "attenuationDistance": shortest / 1000,
                                      "attenuationColor": [math.exp(-shortest / max(length, 1e-9)) for length in radius]},
-            "KHR_materials_volume_scatter": {"multiscatterColor": color,
+            "KHR_materials_volume_scatter": {"multiscatterColor": matched_albedo(color, medium["specular_ior"]),
                                              "scatterAnisotropy": medium["subsurface_scatter_anisotropy"]},
         }
         weight = medium.get("subsurface_weight", 1.0)
