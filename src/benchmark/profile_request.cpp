@@ -107,6 +107,14 @@ bool are_alike(const std::vector<SlabLayer>& a, const std::vector<SlabLayer>& b)
   });
 }
 
+ProfileKind profile_kind(const std::string& name) {
+  const auto found = std::ranges::find(kProfileNames, name);
+  if (found != kProfileNames.end()) return ProfileKind(found - kProfileNames.begin());
+  throw Error(ErrorKind::bad_input, {}, 0, 0,
+              "unknown radial profile '" + printable(name) + "'" + did_you_mean(name, kProfileNames),
+              "one of " + join(kProfileNames));
+}
+
 }  // namespace
 
 ProfileRequest profile_request(const GivenProfile& given) {
@@ -129,6 +137,7 @@ ProfileRequest profile_request(const GivenProfile& given) {
   check_option(given, request.thickness > 0, "thickness", "a length above 0", request.thickness);
   if (given.walks) request.walks = std::size_t(*given.walks);
   request.seed = given.seed;
+  for (const std::string& profile : given.profiles) request.kinds.push_back(profile_kind(profile));
   constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
   for (std::size_t c = 0; c < 3; ++c) {
     const std::string channel = wavelengths ? fmt::format("{:.0f} nm", wavelengths->bands[c][0]) : kNames[c];

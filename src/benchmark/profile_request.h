@@ -18,7 +18,8 @@ struct GivenProfile {
   std::optional<double> thickness;        ///< mm; none: a half space
   std::optional<std::uint64_t> walks;
   std::uint64_t seed = 1;
-  const char* prefix = "--";  ///< before option names in messages
+  std::vector<std::string> profiles;  ///< names of radial profiles; none: all
+  const char* prefix = "--";          ///< before option names in messages
 };
 
 /// error Error{bad_input}: no such medium, a value out of its range, a medium without coefficients

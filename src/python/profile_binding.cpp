@@ -78,7 +78,8 @@ nb::dict model_dict(const ModelFace& model, const WalkedFace& walked, bool has_w
   return values;
 }
 
-nb::dict face_dict(const ProfiledChannel& channel, WalkedFace SlabWalks::*face, double height) {
+nb::dict face_dict(const ProfileRequest& request, const ProfiledChannel& channel, WalkedFace SlabWalks::*face,
+                   double height) {
   const WalkedFace& diffuse = channel.diffuse.*face;
   const bool has_walks = channel.diffuse.walks > 0;
   nb::dict values, models;
@@ -88,8 +89,9 @@ nb::dict face_dict(const ProfiledChannel& channel, WalkedFace SlabWalks::*face, 
     values["walks_normal"] = walks_dict(channel.normal.*face);
   }
   for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind)
-    models[nb::str(kProfileNames[kind].data(), kProfileNames[kind].size())] =
-        model_dict({&channel.models[kind], height}, diffuse, has_walks);
+    if (has_kind(request, kind))
+      models[nb::str(kProfileNames[kind].data(), kProfileNames[kind].size())] =
+          model_dict({&channel.models[kind], height}, diffuse, has_walks);
   values["models"] = models;
   if (height == 0 && channel.layered_diffusion) values["layers_normal"] = *channel.layered_diffusion;
   return values;
@@ -99,9 +101,9 @@ nb::dict report_dict(const ProfileReport& report) {
   nb::dict channels;
   for (const ProfiledChannel& channel : report.channels) {
     nb::dict values;
-    values["back"] = face_dict(channel, &SlabWalks::back, 0);
+    values["back"] = face_dict(report.request, channel, &SlabWalks::back, 0);
     if (report.is_slab())
-      values["through"] = face_dict(channel, &SlabWalks::through, report.request.thickness);
+      values["through"] = face_dict(report.request, channel, &SlabWalks::through, report.request.thickness);
     values["walks"] = channel.diffuse.walks;
     if (channel.diffuse.walks > 0) {
       add_walked(values, "unfinished", channel.diffuse.unfinished);
@@ -122,10 +124,10 @@ nb::dict report_dict(const ProfileReport& report) {
 nb::dict profile(const std::string& medium, const std::string& scene,
                  const std::optional<std::string>& scene_text, std::optional<double> thickness,
                  std::optional<double> eta, std::optional<double> g, std::optional<std::uint64_t> walks,
-                 std::uint64_t seed) {
+                 std::uint64_t seed, const std::vector<std::string>& profiles) {
   constexpr std::uint64_t kMostWalks = 1'000'000'000;
   if (walks > kMostWalks) throw nb::value_error("walks: 0 to 1,000,000,000");
-  const GivenProfile given{medium, scene, scene_text, eta, g, thickness, walks, seed, ""};
+  const GivenProfile given{medium, scene, scene_text, eta, g, thickness, walks, seed, profiles, ""};
   return report_dict(
       interruptible([&](Monitor& monitor) { return measure_profiles(profile_request(given), monitor); }));
 }
@@ -134,7 +136,7 @@ nb::dict profile(const std::string& medium, const std::string& scene,
 
 void add_profile(nb::module_& module) {
   module.def("profile", &profile, "medium"_a, "scene"_a, "scene_text"_a.none(), "thickness"_a.none(),
-             "eta"_a.none(), "g"_a.none(), "walks"_a.none(), "seed"_a);
+             "eta"_a.none(), "g"_a.none(), "walks"_a.none(), "seed"_a, "profiles"_a);
 }
 
 }  // namespace opaline

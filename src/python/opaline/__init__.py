@@ -17,7 +17,7 @@ import hashlib
 import json
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -176,13 +176,14 @@ def render(scene: str | os.PathLike | Mapping[str, Any], overrides: Mapping[str,
 
 def profile(medium: str | Mapping[str, Any], *, scene: str | os.PathLike | Mapping[str, Any] | None = None,
             thickness: float | None = None, eta: float | None = None, g: float | None = None, walks: int | None = None,
-            seed: int = 1) -> dict[str, Any]:
+            seed: int = 1, profiles: Sequence[str] = ()) -> dict[str, Any]:
     """Radial profiles of a medium beside random walks in it, with the numbers of `opaline profile`.
 
     medium: a preset, coefficients as in a scene file ({"sigma_a": 0.01, "sigma_s": 2}, in 1/mm), or the name of a medium of
     the scene, perhaps of layers. thickness: of a slab in mm; None: a half space. eta: index of refraction, inside over
     outside, and g: mean cosine of the scattering angle at the same reduced scattering; None: the medium's. walks: per
-    channel and angle of incidence; None: as many as some seconds allow; 0: radial profiles alone, at once.
+    channel and angle of incidence; None: as many as some seconds allow; 0: radial profiles alone.
+    profiles: names of the radial profiles, such as "dipole"; none: all of them, of which "tabulated" takes a second.
 
     Returns the keys medium, eta, g, thickness (inf: a half space) and channels: R, G and B, wavelengths such as "620 nm", or
     "all" for three equal ones. A channel has the number of `walks`, the fraction `unfinished`, and its faces: `back`, and for
@@ -200,11 +201,11 @@ def profile(medium: str | Mapping[str, Any], *, scene: str | os.PathLike | Mappi
 
     With walks, a channel has albedo_by_entry too: M reflected fractions of diffuse light by its cosine of incidence.
 
-    Raises BadInput for an unknown medium, one without coefficients (subsurface_color), and values out of range. Other
+    Raises BadInput for an unknown medium or profile, a medium without coefficients (subsurface_color), and values out of range. Other
     threads of Python go on meanwhile; Ctrl-C ends it with KeyboardInterrupt. The same seed gives the same bits.
     """
     files = Session()  # of arrays in the scene
     text = json.dumps(files._with_files(scene)) if isinstance(scene, Mapping) else None
     path = "" if scene is None else "scene.json" if text is not None else os.fspath(scene)
     given = json.dumps(files._with_files(medium)) if isinstance(medium, Mapping) else medium
-    return _opaline.profile(given, path, text, thickness, eta, g, walks, seed)
+    return _opaline.profile(given, path, text, thickness, eta, g, walks, seed, list(profiles))
