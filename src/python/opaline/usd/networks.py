@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 
+import numpy as np
 from pxr import Sdf, UsdShade
 
 from .records import Picture
@@ -27,10 +28,10 @@ def from_srgb(value):
 
 
 def plain(value):
-    """A number, or a list of three."""
+    """A number, or a list of three, with the digits of a float."""
     if isinstance(value, (bool, int, float)):
-        return float(value)
-    return [float(part) for part in tuple(value)[:3]]
+        return float(str(np.float32(value)))
+    return [float(str(np.float32(part))) for part in tuple(value)[:3]]
 
 
 class Network:
