@@ -43,6 +43,8 @@ def {kind} "{name}" (prepend apiSchemas = ["ShapingAPI"])
     ("RectLight", "float inputs:width = 0.1\nfloat inputs:height = 0.05\nfloat inputs:intensity = 500", 500 * 0.005 / 4 / np.pi),
     ("RectLight", "float inputs:width = 0.1\nfloat inputs:height = 0.05\nfloat inputs:intensity = 5\nbool inputs:normalize = 1",
      5 / 4 / np.pi),
+    ("RectLight", "float inputs:width = 0.1\nfloat inputs:height = 0.05\nfloat inputs:intensity = 500\n"
+     "float3 xformOp:scale = (-1, 1, 1)", 500 * 0.005 / 4 / np.pi),
     ("DiskLight", "float inputs:radius = 0.05\nfloat inputs:intensity = 500", 500 * np.pi * 0.0025 / 4 / np.pi),
     ("DomeLight", "float inputs:intensity = 0.7", 0.7),
 ])
@@ -51,7 +53,8 @@ def test_light_on_a_floor(tmp_path, kind, inputs, expected):
     Fails if: a light misses an area, a factor of pi, a unit, or faces away."""
     camera = CAMERA.replace("(0, 0, 10)", "(0, -8, 8)").replace("double3", "float xformOp:rotateX = 45\n    double3").replace(
         '["xformOp:translate"]', '["xformOp:translate", "xformOp:rotateX"]')
-    path, losses = converted(tmp_path, FLOOR + camera + light(kind, inputs), head='metersPerUnit = 0.5\n    upAxis = "Z"')
+    more = ', "xformOp:scale"' if "scale" in inputs else ""
+    path, losses = converted(tmp_path, FLOOR + camera + light(kind, inputs, more=more), head='metersPerUnit = 0.5\n    upAxis = "Z"')
     found = rendered(path, **{"settings.light_samples": 64})[CENTER]
     assert found[:3] == pytest.approx([expected] * 3, rel=.01)
     assert [line.split(" (")[0].removeprefix("not carried over: ") for line in losses] == {

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("pxr", reason="usd-core is not installed")
 
 import opaline
-from usd_stages import CAMERA, SUN, VIEW, converted, keys_of, material, mesh, rendered
+from usd_stages import CAMERA, SUN, VIEW, converted, document_of, keys_of, material, mesh, rendered
 
 BIND = "rel material:binding = </Paint>"
 CARD = [(-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0)]
@@ -62,6 +62,8 @@ def test_a_preview_surface_as_by_hand(tmp_path, ending):
         body = material("Paint", "UsdPreviewSurface", inputs) + card() + CAMERA + SUN
         path, losses = converted(tmp_path, body, ending)
         assert losses == []
+        if ending == ".glb":
+            assert document_of(path)["materials"][0]["doubleSided"] is True
         direction = keys_of(tmp_path, body)["lights"][0]["direction"]
         scene = {"mm_per_unit": 1000, "camera": VIEW, "shapes": [
             {"name": "card", "quad": {"corner": [-2, -2, 0], "u": [4, 0, 0], "v": [0, 4, 0]}} | expected],

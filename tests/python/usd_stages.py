@@ -95,5 +95,11 @@ def rendered(scene, **overrides):
     return image.array[..., :4]
 
 
+def document_of(path):
+    """The JSON of a GLB."""
+    data = path.read_bytes()
+    return json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])
+
+
 def triangles_of(faces):
     return np.array([(face[0], face[i], face[i + 1]) for face in faces for i in range(1, len(face) - 1)])
