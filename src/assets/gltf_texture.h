@@ -10,7 +10,7 @@
 namespace opaline {
 
 /// The texture for a scene file, with KHR_texture_transform applied.
-/// in    info: a material's reference to it, with an index; uv_set: that of the mesh; mesh_path: the asset's name in the scene file;
+/// in    info: a material's reference to it, with an index; uv_set: of the mesh; mesh_path: the asset's name in the scene file;
 ///       is_color: used as a colour, else as data
 /// out   opened: receives its image; warning: of the image's file, see NamedFile
 /// error Error{bad_input} naming the asset and the record: not convertible, and why; OutsideAsset

@@ -188,7 +188,7 @@ def test_the_command(tmp_path):
     command = [sys.executable, "-m", "opaline.usd", source, "-o", tmp_path / "a.glb"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.splitlines() == ["not carried over: sizes of lights, which blur their shadows, except in a .json scene "
+    assert done.stdout.splitlines() == ["not carried over: sizes of lights and their soft shadows, except in a .json scene "
                                         "(1, first /Light)", f"wrote {tmp_path / 'a.glb'}"]
     program = [os.environ["OPALINE_PROGRAM"], "render", tmp_path / "a.glb", "-o", tmp_path / "a.exr", "--quiet",
                "--set", "film.resolution=[16,16]"]

@@ -183,7 +183,7 @@ def profile(medium: str | Mapping[str, Any], *, scene: str | os.PathLike | Mappi
     the scene, perhaps of layers. thickness: of a slab in mm; None: a half space. eta: index of refraction, inside over
     outside, and g: mean cosine of the scattering angle at the same reduced scattering; None: the medium's. walks: per
     channel and angle of incidence; None: as many as some seconds allow; 0: radial profiles alone.
-    profiles: names of the radial profiles, such as "dipole"; none: all of them, of which "tabulated" takes a second.
+    profiles: names of the radial profiles, such as "dipole"; none: all of them. "tabulated" takes a second.
 
     Returns the keys medium, eta, g, thickness (inf: a half space) and channels: R, G and B, wavelengths such as "620 nm", or
     "all" for three equal ones. A channel has the number of `walks`, the fraction `unfinished`, and its faces: `back`, and for

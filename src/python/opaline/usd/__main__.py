@@ -4,8 +4,8 @@ import argparse
 import sys
 
 DESCRIPTION = """Converts a USD file (.usd, .usda, .usdc, .usdz) to a GLB, or to a scene file with its meshes beside it.
-A .json scene keeps what glTF has no words for: dome, rectangle and disk lights, sizes of lights, depth of field, and
-textures of every format. Prints one line for each kind of thing that is not carried over."""
+A .json scene keeps more than glTF: dome, rectangle and disk lights, sizes of lights, depth of field, and
+textures of every format. Prints one line for each kind of loss."""
 
 
 def main():
@@ -13,7 +13,7 @@ def main():
     parser.add_argument("input", help="USD file")
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help=".glb or .json")
     parser.add_argument("--time", type=float, metavar="CODE", help="time code; default: the start of the stage")
-    parser.add_argument("--camera", metavar="PATH", help="default: that of the render settings, or the first")
+    parser.add_argument("--camera", metavar="PATH", help="default: from the render settings, or the first")
     arguments = parser.parse_args()
     try:
         from . import UsdError, convert

@@ -39,7 +39,7 @@ class StageReader:
         for prim, matrix in PrimWalk(self.stage, self.file, self.time).run():
             kind = str(prim.GetTypeName())
             if not np.isfinite(matrix).all():
-                raise UsdError(self.file, prim.GetPath(), "has a transform that is not finite")
+                raise UsdError(self.file, prim.GetPath(), "has no finite transform")
             if prim.IsA(UsdGeom.Mesh) or kind in SOLIDS:
                 self.add_mesh(prim, self.axes @ matrix)
             elif prim.IsA(UsdGeom.Camera):
@@ -79,7 +79,7 @@ class StageReader:
         self.scene.lights.append(keys | {"name": name, "path": path, "kind": names.get(kind, "dome lights")})
 
     def add_camera(self, wanted):
-        """The given camera, that of the render settings, or the first."""
+        """The given camera, the one of the render settings, or the first."""
         targets = self.settings.GetCameraRel().GetForwardedTargets() if self.settings else []
         path = wanted or (str(targets[0]) if targets else next(iter(self.camera_matrices), None))
         if path is not None and path not in self.camera_matrices:
@@ -114,8 +114,8 @@ def write_beside(path, data):
 def convert(source, target, time=None, camera=None):
     """Converts a USD file to a GLB (.glb) or to a scene file with its meshes and images (.json).
 
-    time: a time code; None: the start time of the stage. camera: path of a camera; None: that of the render settings, or
-    the first. Returns a line for each kind of thing that was not carried over. Raises UsdError, with `file` and `prim`.
+    time: a time code; None: the start time of the stage. camera: path of a camera; None: the one of the render settings,
+    or the first. Returns a line for each kind of loss. Raises UsdError, with `file` and `prim`.
     """
     source, target = os.fspath(source), os.fspath(target)
     ending = os.path.splitext(target)[1].lower()

@@ -71,7 +71,7 @@ def mesh_file(meshes):
 
 
 def scene_file(scene, losses):
-    """Bytes of a GLB with the whole scene, in metres. What glTF lacks is added to the losses."""
+    """Bytes of a GLB with the whole scene, in metres. Parts without a counterpart in glTF are added to the losses."""
     glb = Glb()
     materials = GltfMaterials(glb, losses)
     metres = scene.mm_per_unit / 1000
@@ -97,7 +97,7 @@ def columns(matrix):
 
 
 def looking(position, forward, up):
-    """Columns of the matrix of a node at a position that looks along its -z."""
+    """Columns of the matrix of a node at a position, looking along its -z."""
     backward = -np.array(forward) / np.linalg.norm(forward)
     right = np.cross(up, backward)
     right /= np.linalg.norm(right)
@@ -134,7 +134,7 @@ def add_light(glb, light, metres, losses):
         losses.add(f"{light['kind']}, except in a .json scene", path)
         return
     if kind == "sphere" or "angle" in light:
-        losses.add("sizes of lights, which blur their shadows, except in a .json scene", path)
+        losses.add("sizes of lights and their soft shadows, except in a .json scene", path)
     if kind == "sphere":
         color = np.array(light["radiance"]) * (math.pi * (light["radius"] * metres) ** 2)
     else:

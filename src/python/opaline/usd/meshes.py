@@ -38,7 +38,7 @@ class Geometry:
 
     def check_faces(self):
         if not np.isfinite(self.points).all():
-            self.fail("points has a value that is not finite")
+            self.fail("points has an infinite or undefined value")
         if len(self.counts) and self.counts.min() < 0:
             self.fail(f"faceVertexCounts has {self.counts.min()}, expected 0 or more")
         if self.counts.sum() != len(self.vertices):
@@ -63,7 +63,7 @@ class Geometry:
         if len(values) < expected:
             self.fail(f"{name} has {len(values)} values, expected {expected} ({interpolation})")
         if not np.isfinite(values).all():
-            self.fail(f"{name} has a value that is not finite")
+            self.fail(f"{name} has an infinite or undefined value")
         return values[numbers]
 
     def primvar(self, name, width):

@@ -137,7 +137,7 @@ class Network:
         self.add_scale(texture, shader, output, is_color)
         for name in ("wrapS", "wrapT"):
             if (wrap := self.constant(shader, name, "useMetadata")) not in WRAPS:
-                self.lose(f"the wrap mode {wrap} of textures, which repeat")
+                self.lose(f"the wrap mode {wrap} of textures; they repeat")
         return texture | self.mapping(shader, "st")
 
     def add_scale(self, texture, shader, output, is_color):
@@ -163,7 +163,7 @@ class Network:
         self.add_space(texture, self.attribute(shader, "file").GetColorSpace() or "auto")
         for name in ("uaddressmode", "vaddressmode"):
             if (wrap := self.constant(shader, name, "periodic")) not in WRAPS:
-                self.lose(f"the wrap mode {wrap} of textures, which repeat")
+                self.lose(f"the wrap mode {wrap} of textures; they repeat")
         tiling = self.constant(shader, "uvtiling")
         offset = self.constant(shader, "uvoffset", (0, 0))
         if tiling is not None or any(offset):  # uv * tiling - offset

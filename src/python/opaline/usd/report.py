@@ -3,7 +3,7 @@
 
 
 class UsdError(Exception):
-    """A file or prim that cannot be used: `file`, `prim` (a path, or empty) and the message."""
+    """An unusable file or prim: `file`, `prim` (a path, or empty) and the message."""
 
     def __init__(self, file, prim, message):
         self.file, self.prim = str(file), str(prim)

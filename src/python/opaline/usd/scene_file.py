@@ -21,7 +21,7 @@ class SceneFile:
         self.used_names = {}
 
     def text(self):
-        """The scene file; adds the files that it names."""
+        """The scene file; adds the files named in it."""
         meshes = list({id(shape.mesh): shape.mesh for shape in self.scene.shapes}.values())
         numbers = {id(mesh): number for number, mesh in enumerate(meshes)}
         mesh_name = f"{self.stem}.meshes.glb"
