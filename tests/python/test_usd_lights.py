@@ -183,7 +183,7 @@ def test_a_lone_mesh(tmp_path):
 
 def test_the_command(tmp_path):
     """Claim: opaline-usd writes the file, prints losses, and the program renders it without a word; a mistake is one line and exit
-    code 2. Fails if: the command needs another name or writes to the wrong stream."""
+    code 2, also without usd-core. Fails if: the command needs another name, writes to the wrong stream, or imports too early."""
     source = write_stage(tmp_path / "stage.usda", FLOOR + CAMERA + light("SphereLight", "float inputs:intensity = 9", place=(0, 0, 7)))
     command = [sys.executable, "-m", "opaline.usd", source, "-o", tmp_path / "a.glb"]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -194,6 +194,10 @@ def test_the_command(tmp_path):
                "--set", "film.resolution=[16,16]"]
     render = subprocess.run(program, capture_output=True, text=True)
     assert (render.returncode, render.stdout, render.stderr) == (0, "", "")
+    without = subprocess.run([sys.executable, "-c", "import sys; sys.modules['pxr'] = None; from opaline.usd.__main__ import main; "
+                              "sys.exit(main())", *command[3:]], capture_output=True, text=True)
+    assert (without.returncode, without.stdout) == (2, "")
+    assert without.stderr == "opaline-usd: needs usd-core: pip install usd-core\n"
     wrong = subprocess.run([*command[:3], tmp_path / "none.usd", "-o", tmp_path / "b.glb"], capture_output=True, text=True)
     assert (wrong.returncode, wrong.stdout) == (2, "")
     assert wrong.stderr == f"opaline-usd: {tmp_path / 'none.usd'}: no such file\n"

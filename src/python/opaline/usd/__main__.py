@@ -3,6 +3,8 @@
 import argparse
 import sys
 
+from . import UsdError, convert
+
 DESCRIPTION = """Converts a USD file (.usd, .usda, .usdc, .usdz) to a GLB, or to a scene file with its meshes beside it.
 A .json scene keeps more than glTF: dome, rectangle and disk lights, sizes of lights, depth of field, and
 textures of every format. Prints one line for each kind of loss."""
@@ -16,16 +18,14 @@ def main():
     parser.add_argument("--camera", metavar="PATH", help="default: from the render settings, or the first")
     arguments = parser.parse_args()
     try:
-        from . import UsdError, convert
+        lines = convert(arguments.input, arguments.output, arguments.time, arguments.camera)
+    except UsdError as error:
+        print(f"opaline-usd: {error}", file=sys.stderr)
+        return 2
     except ModuleNotFoundError as error:
         if error.name != "pxr":
             raise
         print("opaline-usd: needs usd-core: pip install usd-core", file=sys.stderr)
-        return 2
-    try:
-        lines = convert(arguments.input, arguments.output, arguments.time, arguments.camera)
-    except UsdError as error:
-        print(f"opaline-usd: {error}", file=sys.stderr)
         return 2
     for line in lines:
         print(line)

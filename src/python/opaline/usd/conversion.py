@@ -111,13 +111,8 @@ def write_beside(path, data):
         raise UsdError(path, "", f"cannot be written: {error.strerror}") from error
 
 
-def convert(source, target, time=None, camera=None):
-    """Converts a USD file to a GLB (.glb) or to a scene file with its meshes and images (.json).
-
-    time: a time code; None: the start time of the stage. camera: path of a camera; None: the one of the render settings,
-    or the first. Returns a line for each kind of loss. Raises UsdError, with `file` and `prim`.
-    """
-    source, target = os.fspath(source), os.fspath(target)
+def convert_file(source, target, time, camera):
+    """See opaline.usd.convert."""
     ending = os.path.splitext(target)[1].lower()
     if ending not in (".glb", ".json"):
         raise UsdError(target, "", "is no name of an output, expected .glb or .json")
