@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lights and cameras of USD files."""
+import json
 import os
 import subprocess
 import sys
@@ -102,6 +103,20 @@ def test_a_dome_with_an_image(tmp_path):
     assert np.abs(brightest(31, 0)).max() < 0.5  # from the camera
     assert brightest(15, 0)[0] > 1.5  # from +x, the right
     assert brightest(31, 90)[0] > 1.5
+
+
+def test_domes_with_z_up(tmp_path):
+    """Claim: on a stage with z up, DomeLight_1 and a DomeLight turned by UsdLux's orientToStageUpAxis stand upright with the centre of
+    the image at -y, which becomes +z; another DomeLight lies, and is named. Source: UsdLux. Fails if: the pole is taken from the
+    stage for all, or for none."""
+    opaline.image(np.ones((4, 8, 3), np.float32), ["R", "G", "B"]).write(str(tmp_path / "dome.exr"))
+    turned = ('float xformOp:rotateX:orientToStageUpAxis = 90\n'
+              'uniform token[] xformOpOrder = ["xformOp:rotateX:orientToStageUpAxis"]')
+    for kind, rest, is_upright in (("DomeLight_1", "", True), ("DomeLight", turned, True), ("DomeLight", "", False)):
+        dome = f'def {kind} "Dome"\n{{\n    asset inputs:texture:file = @dome.exr@\n    {rest}\n}}\n'
+        path, losses = converted(tmp_path, FLOOR + CAMERA + dome, head='metersPerUnit = 1\n    upAxis = "Z"')
+        assert losses == ([] if is_upright else ["not carried over: tilts of dome lights (1, first /Dome)"])
+        assert json.loads(path.read_text())["lights"][0]["rotation"] == pytest.approx(0, abs=1e-9)
 
 
 def test_even_domes_and_temperatures(tmp_path):
