@@ -40,7 +40,7 @@ def cut_ears(points):
 
 
 def triangulate(points, counts, vertices):
-    """Corners of triangles (t x 3, counted over all faces) and the face of each; faces of two corners have none."""
+    """Corners of triangles (t x 3, counted over all faces) and the face of each, without those of no area."""
     starts = np.cumsum(counts) - counts
     corners, faces = [np.empty((0, 3), int)], [np.empty(0, int)]
     for count in np.unique(counts[counts > 2]):
@@ -54,8 +54,11 @@ def triangulate(points, counts, vertices):
                 cut[i] = cut_ears(places[i])
         corners.append(np.take_along_axis(own[:, None, :], cut.reshape(len(group), 1, -1), axis=2).reshape(-1, 3))
         faces.append(np.repeat(group, count - 2))
-    order = np.argsort(np.concatenate(faces), kind="stable")
-    return np.concatenate(corners)[order], np.concatenate(faces)[order]
+    corners, faces = np.concatenate(corners), np.concatenate(faces)
+    a, b, c = points[vertices[corners]].transpose(1, 0, 2)
+    has_area = np.cross(b - a, c - a).any(axis=1)
+    order = np.argsort(faces[has_area], kind="stable")
+    return corners[has_area][order], faces[has_area][order]
 
 
 def vertex_normals(points, triangles):

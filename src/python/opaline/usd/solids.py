@@ -14,7 +14,7 @@ TURNS = {"X": [2, 0, 1], "Y": [1, 2, 0], "Z": [0, 1, 2]}  # from the axis z: whe
 def arc(radius, center, low, high, count):
     """Points (distance from the axis, height) and normals of an arc of a meridian, angles from the pole below."""
     angles = np.linspace(low, high, count + 1)
-    normals = np.stack([np.sin(angles), -np.cos(angles)], axis=1)
+    normals = np.stack([np.sin(angles), -np.cos(angles)], axis=1).round(15)  # on the axis at the poles
     return radius * normals + [0, center], normals
 
 
