@@ -150,10 +150,10 @@ fetch_mitsuba() {
   fi
 }
 
-# For the Python package and its tests; the same holds. Examples: with the libraries that they use.
+# For the Python package and its tests; the same holds. --long: with the libraries of its examples, and of USD files (29 MB).
 fetch_python() {
   local folder=$root/build-python packages=(nanobind numpy pytest)
-  [[ ${1:-} != --examples ]] || packages+=(scipy matplotlib)
+  [[ ${1:-} != --long ]] || packages+=(scipy matplotlib usd-core)
   [[ ! -e $folder/done${1:-} ]] || return 0
   say "fetching ${packages[*]} from PyPI"
   local is_new=no

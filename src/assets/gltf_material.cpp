@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "asset_files/asset_file.h"
+#include "asset_files/gltf_uv_set.h"
 #include "assets/gltf_ranges.h"
 #include "assets/gltf_texture.h"
 
@@ -151,13 +152,13 @@ class MaterialTranslator {
   std::optional<Json> texture(const GltfRecord& info, const std::string& name) {
     if (info.index("index") == kNoRecord || !exists(info, name)) return {};
     if (!use_.has_uvs) {
-      not_carried(name + ": its mesh has no TEXCOORD_0");
+      not_carried(name + ": its mesh has no " + uv_attribute(use_.uv_set));
       return {};
     }
     try {
       std::string warning;
       const bool is_color = name == base_.color_texture_name || name.ends_with("ColorTexture");
-      Json json = texture_json(gltf_, info, use_.mesh_path, is_color, scene_.textures, warning);
+      Json json = texture_json(gltf_, info, use_.uv_set, use_.mesh_path, is_color, scene_.textures, warning);
       if (!warning.empty()) warn(name + ' ' + warning);
       translated(name + " -> " + json["texture"].get<std::string>());
       return json;

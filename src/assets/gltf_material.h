@@ -13,7 +13,8 @@ namespace opaline {
 /// Use of a material.
 struct MaterialUse {
   std::uint32_t index = kNoRecord;  ///< none: glTF's default one, white
-  bool has_uvs = false;             ///< true if its mesh has UVs
+  std::size_t uv_set = 0;           ///< see uv_set_of
+  bool has_uvs = false;             ///< true if its mesh has these UVs
   bool has_tangents = false;
   std::string mesh_path{};  ///< name of the asset in the scene file
 };

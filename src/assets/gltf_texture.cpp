@@ -6,6 +6,7 @@
 #include "asset_files/asset_file.h"
 #include "asset_files/gltf_file.h"
 #include "asset_files/gltf_image.h"
+#include "asset_files/gltf_uv_set.h"
 #include "core/input_file.h"
 #include "image/texture_file.h"
 
@@ -54,14 +55,14 @@ void add_transform(const GltfRecord& transform, Json& json) {
 
 }  // namespace
 
-Json texture_json(const GltfModel& gltf, const GltfRecord& info, const std::string& mesh_path, bool is_color,
+Json texture_json(const GltfModel& gltf, const GltfRecord& info, std::size_t uv_set,
+                  const std::string& mesh_path, bool is_color,
                   std::vector<std::shared_ptr<const TextureFile>>& opened, std::string& warning) {
   const GltfRecord transform = info.record("extensions").record("KHR_texture_transform");
-  const std::size_t uv_set = transform.size("texCoord", info.size("texCoord", 0)),
-                    texture = info.index("index");
-  if (uv_set != 0)
-    fail_at(gltf.path, record_name("textures", texture), "uses another set of UVs", "TEXCOORD_0",
-            "TEXCOORD_" + std::to_string(uv_set));
+  const std::size_t texture = info.index("index");
+  if (const std::size_t own = uv_set_of(info); own != uv_set)
+    fail_at(gltf.path, record_name("textures", texture), "uses another set of UVs", uv_attribute(uv_set),
+            uv_attribute(own));
   const std::size_t image = image_of(gltf, texture);
   opened.push_back(opened_image(gltf, image, is_color));
   const NamedFile file = gltf_image_file(gltf, gltf.record("images", image));

@@ -7,6 +7,7 @@
 
 #include "asset_files/gltf_accessor.h"
 #include "asset_files/gltf_animation.h"
+#include "asset_files/gltf_uv_set.h"
 #include "assets/asset_scene.h"
 #include "assets/gltf_material.h"
 #include "assets/gltf_motion.h"
@@ -217,7 +218,8 @@ class GltfImporter {
     const bool is_faceted = !primitive.attributes.contains("NORMAL");
     if (is_faceted) shape["normals"] = "faceted";
     if (primitive.attributes.contains("COLOR_0")) shape["vertex_colors"] = scene_.has_vertex_colors = true;
-    const MaterialUse use{primitive.material, primitive.attributes.contains("TEXCOORD_0"),
+    const std::size_t uv_set = uv_set_of(gltf_, primitive);
+    const MaterialUse use{primitive.material, uv_set, primitive.attributes.contains(uv_attribute(uv_set)),
                           primitive.attributes.contains("TANGENT") && primitive.attributes.contains("NORMAL"),
                           mesh_path_};
     add_surface(shape, use, placed, mesh.primitives.size() > 1);
@@ -259,7 +261,7 @@ class GltfImporter {
   };
 
   const Surface& surface_of(const MaterialUse& use) {
-    const std::tuple key{use.index, use.has_uvs, use.has_tangents};
+    const std::tuple key{use.index, use.uv_set, use.has_uvs, use.has_tangents};
     const auto known = surfaces_.find(key);
     if (known != surfaces_.end()) return known->second;
     SurfaceTranslation translation = translate_material(gltf_, use, scene_);
@@ -345,8 +347,8 @@ class GltfImporter {
   AssetScene scene_;
   std::optional<GltfMotion> motion_;
   UniqueNames shape_names_, medium_names_, light_names_;
-  std::map<std::tuple<std::uint32_t, bool, bool>, Surface>
-      surfaces_;  // by material, and presence of UVs and tangents
+  std::map<std::tuple<std::uint32_t, std::size_t, bool, bool>, Surface>
+      surfaces_;  // by material, its set of UVs, and presence of UVs and tangents
   std::set<std::size_t> told_meshes_;
   std::vector<PlacedPart> parts_;
 };

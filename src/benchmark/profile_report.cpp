@@ -35,15 +35,17 @@ HomogeneousMedium medium_of(const ProfileRequest& request, std::span<const SlabL
           request.g, request.eta};
 }
 
-std::vector<ChannelProfile> models_of(const HomogeneousMedium& medium, std::span<const SlabLayer> layers,
-                                      double thickness) {
+std::vector<ChannelProfile> models_of(const ProfileRequest& request, const HomogeneousMedium& medium,
+                                      std::span<const SlabLayer> layers) {
   const double length = medium.reduced_mean_free_path();
   std::vector<ChannelProfile> models;
   for (std::size_t kind = 0; kind < kProfileNames.size(); ++kind) {
     const bool is_empty = !std::isfinite(length);
     const ReducedMedium reduced{is_empty ? 0 : length, is_empty ? 1 : medium.sigma_a * length, medium.eta,
-                                thickness};
-    if (ProfileKind(kind) == ProfileKind::tabulated && layers.size() > 1 && !is_empty)
+                                request.thickness};
+    if (!has_kind(request, kind))
+      models.emplace_back();
+    else if (ProfileKind(kind) == ProfileKind::tabulated && layers.size() > 1 && !is_empty)
       models.emplace_back(make_layered_profile(flat(layers), reduced));
     else
       models.push_back(make_channel_profile(ProfileKind(kind), reduced));
@@ -67,6 +69,17 @@ std::size_t walks_for(const ProfileRequest& request, std::span<const SlabLayer> 
                                 kMostWalks));  // 3: entry and exit
 }
 
+SlabWalks empty_walks(const HomogeneousMedium& medium) {
+  SlabWalks walks;
+  double low = 0;
+  for (const double high : default_radii(medium)) {
+    walks.back.rings.push_back({.low = low, .high = high, .share = {}, .within = {}, .profile = {}});
+    low = high;
+  }
+  walks.through.rings = walks.back.rings;
+  return walks;
+}
+
 }  // namespace
 
 ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor) {
@@ -78,9 +91,14 @@ ProfileReport measure_profiles(const ProfileRequest& request, Monitor& monitor) 
   std::uint64_t run = 0;
   for (const auto& [name, layers] : request.channels) {
     const HomogeneousMedium medium = medium_of(request, layers);
-    ProfiledChannel channel{name, medium, {}, models_of(medium, layers, request.thickness), {}, {}};
+    ProfiledChannel channel{name, medium, {}, models_of(request, medium, layers), {}, {}};
     if (layers.size() > 1)
       channel.layered_diffusion = layered_exitance(flat(layers), boundary_mismatch(request.eta), 0);
+    if (request.walks == std::size_t(0)) {
+      channel.diffuse = channel.normal = empty_walks(medium);
+      report.channels.push_back(std::move(channel));
+      continue;
+    }
     LaboratorySettings settings;
     settings.walks = walks_for(request, layers, 2 * count);
     settings.monitor = &monitor;

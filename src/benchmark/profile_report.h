@@ -2,6 +2,7 @@
 // Measurements of `opaline profile`: each radial profile of a medium against random walks.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -25,10 +26,12 @@ struct ChannelLayers {
 struct ProfileRequest {
   std::string name;  ///< displayed name of the medium
   std::vector<ChannelLayers> channels;
+  std::vector<ProfileKind> kinds;  ///< radial profiles; none: all
   double eta = 1.3;
   double g = 0;                                                ///< mean cosine of the walks at equal sigma_s'
   double thickness = std::numeric_limits<double>::infinity();  ///< mm; infinite: a half space
-  std::optional<std::size_t> walks;  ///< per channel and angle of incidence; none: by a limit on collisions
+  /// Per channel and angle of incidence; none: by a limit on collisions; 0: models only, with empty walks in default_radii.
+  std::optional<std::size_t> walks;
   std::uint64_t seed = 1;
 };
 
@@ -38,9 +41,13 @@ struct ProfiledChannel {
   HomogeneousMedium medium;  ///< the equivalent one of layers
   /// With layers: reflected fraction of a beam along the normal by the diffusion equation in the stack.
   std::optional<double> layered_diffusion;
-  std::vector<ChannelProfile> models;  ///< as kProfileNames has them
+  std::vector<ChannelProfile> models;  ///< as kProfileNames has them; empty if not among the request's kinds
   SlabWalks diffuse, normal;           ///< by angle of incidence
 };
+
+inline bool has_kind(const ProfileRequest& request, std::size_t kind) {
+  return request.kinds.empty() || std::ranges::find(request.kinds, ProfileKind(kind)) != request.kinds.end();
+}
 
 /// Notes as in BenchReport.
 struct ProfileReport {

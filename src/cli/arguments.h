@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "benchmark/bench_command.h"
+#include "benchmark/profile_request.h"
 #include "cache/blob_cache.h"
 #include "core/log.h"
 #include "image/picture_layers.h"
@@ -84,12 +85,7 @@ struct CompareArguments {
 
 /// Compares a medium's radial profiles with random walks.
 struct ProfileArguments {
-  std::string medium;               ///< preset name, or a JSON object as in a scene's media
-  std::string scene;                ///< file with the medium by its name; empty: none
-  std::optional<double> eta, g;     ///< replace the medium's
-  std::optional<double> thickness;  ///< mm; none: a half space
-  std::optional<std::uint64_t> walks;
-  std::uint64_t seed = 1;
+  GivenProfile given;
   std::string report;  ///< folder; empty: none
   int threads = 0;     ///< 0: one for each core
   std::string command_line;

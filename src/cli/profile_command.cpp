@@ -11,134 +11,18 @@
 #include "benchmark/machine.h"
 #include "benchmark/page.h"
 #include "benchmark/profile_page.h"
+#include "benchmark/profile_request.h"
 #include "cli/commands.h"
 #include "core/atomic_file.h"
 #include "core/interrupt.h"
 #include "core/progress.h"
 #include "core/stopwatch.h"
 #include "core/units.h"
-#include "diffusion/layered_medium.h"
-#include "input/load_scene.h"
-#include "input/schema.h"
 #include "opaline/enumerations.h"
 #include "opaline/error.h"
-#include "values/json_tree.h"
-#include "values/nearest_name.h"
 
 namespace opaline {
 namespace {
-
-constexpr const char* kGiven = "MEDIUM";  // name of the argument in messages, as in --help
-
-bool is_object(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  return first != std::string::npos && text[first] == '{';
-}
-
-Medium preset_medium(const std::string& name) {
-  const std::span<const std::string_view> names = key_info("medium", "preset").choices;
-  if (std::ranges::find(names, name) != names.end())
-    return parse_medium("{\"preset\": \"" + name + "\"}", kGiven);
-  const std::string near = did_you_mean(name, names);
-  throw Error(ErrorKind::bad_input, {}, 0, 0, "unknown medium '" + printable(name) + "'" + near,
-              near.empty()
-                  ? "one of " + join(names) + R"(, or an object such as {"sigma_a": 0.01, "sigma_s": 2})"
-                  : "");
-}
-
-/// Mean cosine of a medium given as text; a scene's medium includes it in its coefficients.
-double anisotropy_of(const std::string& text) {
-  if (!is_object(text)) return 0;
-  const Document document{kGiven, text, {}, {}, 1, line_starts_of(text)};
-  const Node root = parse_tree(document, text);
-  const Node* g = find_member(root, "g");
-  return g == nullptr ? 0 : g->number;
-}
-
-/// A medium with its name, at wavelengths or in red, green and blue.
-struct GivenMedium {
-  std::string name;
-  Medium medium;
-  std::optional<ThreeWavelengths> wavelengths;
-};
-
-/// A scene's medium, at three wavelengths if the scene has spectra.
-GivenMedium medium_of_scene(const std::string& file, const std::string& name) {
-  Scene scene = load_scene(file, {});
-  if (!scene.other_wavelengths.empty())
-    scene = load_scene(file, std::vector<std::string>{"film.wavelengths=3"});
-  const auto found = std::ranges::find(scene.media, name, &Medium::name);
-  if (found != scene.media.end()) return {name, *found, scene.wavelengths};
-  std::vector<std::string_view> names;
-  for (const Medium& medium : scene.media) names.push_back(medium.name);
-  throw Error(ErrorKind::bad_input, file, 0, 0, "has no medium '" + printable(name) + "'",
-              names.empty() ? "a scene with media" : "one of " + join(names));
-}
-
-GivenMedium given_medium(const ProfileArguments& arguments) {
-  if (!arguments.scene.empty()) return medium_of_scene(arguments.scene, arguments.medium);
-  if (is_object(arguments.medium)) return {"the medium", parse_medium(arguments.medium, kGiven), {}};
-  return {arguments.medium, preset_medium(arguments.medium), {}};
-}
-
-/// Layers of a channel, of scattering with the mean cosine g at the same reduced scattering; the last one fills the rest of
-/// the thickness.
-std::vector<SlabLayer> layers_of(const Medium& medium, std::size_t channel, const ProfileRequest& request) {
-  std::vector<FlatLayer> flat = flat_layers(medium, channel);
-  if (flat.empty()) {
-    const auto& coefficients = std::get<PhysicalMedium>(medium.coefficients);
-    flat.push_back({coefficients.sigma_a[channel], coefficients.sigma_s_prime[channel]});
-  }
-  std::vector<SlabLayer> layers;
-  double above = 0;
-  for (const auto& [sigma_a, sigma_s_prime, thickness] : flat) {
-    layers.push_back({{sigma_a, sigma_s_prime / (1 - request.g), request.g, request.eta}, thickness});
-    above += layers.size() < flat.size() ? thickness : 0;
-  }
-  layers.back().thickness = request.thickness - above;
-  check_value(layers.back().thickness > 0, "--thickness", "a length above that of the upper layers",
-              request.thickness);
-  return layers;
-}
-
-bool are_alike(const std::vector<SlabLayer>& a, const std::vector<SlabLayer>& b) {
-  return std::ranges::equal(a, b, [](const SlabLayer& x, const SlabLayer& y) {
-    return x.medium.sigma_a == y.medium.sigma_a && x.medium.sigma_s == y.medium.sigma_s;
-  });
-}
-
-ProfileRequest request_of(const ProfileArguments& arguments) {
-  const auto [name, medium, wavelengths] = given_medium(arguments);
-  if (!std::holds_alternative<PhysicalMedium>(medium.coefficients))
-    throw Error(ErrorKind::bad_input, {}, 0, 0,
-                "subsurface_color defines a different medium for each diffusion model, so random walks have "
-                "no medium",
-                "sigma_a and sigma_s_prime, or sigma_a and sigma_s");
-  ProfileRequest request;
-  request.name = name;
-  request.eta = arguments.eta.value_or(medium.eta);
-  const Range& range = key_info("medium", "specular_ior").range;
-  check_value(request.eta >= range.low && request.eta <= range.high, "--eta", "a number from 0.1 to 10",
-              request.eta);
-  const double own = arguments.scene.empty() ? anisotropy_of(arguments.medium) : medium.scatter_anisotropy;
-  request.g = arguments.g.value_or(own);
-  check_value(std::abs(request.g) < 1, "--g", "a number between -1 and 1", request.g);
-  if (arguments.thickness) request.thickness = *arguments.thickness;
-  check_value(request.thickness > 0, "--thickness", "a length above 0", request.thickness);
-  if (arguments.walks) request.walks = std::size_t(*arguments.walks);
-  request.seed = arguments.seed;
-  constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::string channel = wavelengths ? fmt::format("{:.0f} nm", wavelengths->bands[c][0]) : kNames[c];
-    request.channels.push_back({channel, layers_of(medium, c, request)});
-  }
-  const std::vector<SlabLayer>& first = request.channels[0].layers;
-  if (are_alike(first, request.channels[1].layers) && are_alike(first, request.channels[2].layers)) {
-    request.channels.resize(1);
-    request.channels[0].name = "all";
-  }
-  return request;
-}
 
 /// Creates the folder or checks that it is writable, before the work.
 void prepare_folder(const std::string& folder) {
@@ -242,7 +126,7 @@ Json report_json(const ProfileReport& report) {
 
 void profile_command(const ProfileArguments& arguments) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader leaving must not cost the report
-  const ProfileRequest request = request_of(arguments);
+  const ProfileRequest request = profile_request(arguments.given);
   if (!arguments.report.empty()) prepare_folder(arguments.report);
   std::optional<tbb::global_control> threads;
   if (arguments.threads > 0)

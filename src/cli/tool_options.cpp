@@ -87,30 +87,30 @@ void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options) {
 }
 
 void add_profile_options(CLI::App& app, ProfileArguments& profile, Options& options) {
-  app.add_option("MEDIUM", profile.medium,
+  GivenProfile& given = profile.given;
+  app.add_option("MEDIUM", given.medium,
                  "a preset such as marble, or the coefficients as in a scene file: '{\"sigma_a\": 0.01, "
                  "\"sigma_s\": 20, \"g\": 0.9, \"specular_ior\": 1.33}'")
       ->required();
-  app.add_option("--scene", profile.scene, "read the medium of this name from a scene file")
-      ->type_name("FILE");
-  app.add_option("--thickness", profile.thickness,
+  app.add_option("--scene", given.scene, "read the medium of this name from a scene file")->type_name("FILE");
+  app.add_option("--thickness", given.thickness,
                  "thickness of a slab, e.g. 2mm, 500um or 0.5cm (default: a half space)")
       ->transform(millimetres_of())
       ->type_name("LENGTH");
-  app.add_option("--eta", profile.eta, "index of refraction, inside over outside (default: the medium's)")
+  app.add_option("--eta", given.eta, "index of refraction, inside over outside (default: the medium's)")
       ->check(number_check())
       ->type_name("X");
   app.add_option(
-         "--g", profile.g,
+         "--g", given.g,
          "mean cosine of the scattering angle, at the same reduced scattering (default: the medium's, or 0)")
       ->check(number_check())
       ->type_name("X");
-  app.add_option("--walks", profile.walks,
+  app.add_option("--walks", given.walks,
                  "random walks per channel, for each of diffuse light and a beam along the normal (default: "
                  "as many as ten seconds of CPU allow in total, at most 1,000,000)")
       ->transform(whole_number(kWalks))
       ->type_name("N");
-  app.add_option("--seed", profile.seed, "random seed (default 1)")
+  app.add_option("--seed", given.seed, "random seed (default 1)")
       ->transform(whole_number(kMostWholeNumber))
       ->type_name("N");
   app.add_option("-o,--output", profile.report, "folder of a page with charts and tables")

@@ -12,8 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <future>
 #include <memory>
 #include <stdexcept>
 
@@ -22,6 +20,8 @@
 #include "input/presets.h"
 #include "opaline/opaline.h"
 #include "plan/expected_error.h"
+#include "python/interruptible.h"
+#include "python/profile_binding.h"
 #include "scene/names.h"
 #include "session/session_records.h"
 
@@ -54,32 +54,6 @@ void set_python_error(const Error& failure) {
   error.attr("expected") = failure.expected;
   error.attr("got") = failure.got;
   PyErr_SetObject(type.ptr(), error.ptr());
-}
-
-/// Runs work on another thread without Python's lock. Ctrl-C cancels it and becomes a KeyboardInterrupt.
-template <class Work>
-auto interruptible(const Work& work) {
-  Monitor monitor;
-  auto result = std::async(std::launch::async, [&] { return work(monitor); });
-  bool is_interrupted = false;
-  for (bool is_done = false; !is_done;) {
-    {
-      const nb::gil_scoped_release unlocked;
-      is_done = result.wait_for(std::chrono::milliseconds(50)) == std::future_status::ready;
-    }
-    if (!is_interrupted && PyErr_CheckSignals() != 0) {
-      is_interrupted = true;
-      monitor.cancelled = true;
-    }
-  }
-  if (is_interrupted) {
-    try {
-      result.get();
-    } catch (const Error&) {
-    }
-    throw nb::python_error();
-  }
-  return result.get();
 }
 
 /// Rows of pixels of a layer, sharing the image's memory: height x width x 3, or height x width.
@@ -338,6 +312,7 @@ NB_MODULE(_opaline, module) {
     for (const Preset& preset : presets()) names.emplace_back(preset.name);
     return names;
   });
+  add_profile(module);
   nb::class_<PythonSession>(module, "Session")
       .def(nb::init<>())
       .def("edit", &PythonSession::edit, "file"_a, "text"_a.none(), "overrides"_a, "frame"_a = 1)

@@ -15,13 +15,15 @@ struct Format {
   std::string_view extension, name, instead = "GLB";
 };
 
+constexpr std::string_view kOfUsd = "GLB, or convert it with opaline-usd";
+
 constexpr std::array<Format, 26> kFormats{{{".fbx", "FBX"},
                                            {".blend", "Blender's .blend"},
                                            {".abc", "Alembic"},
-                                           {".usd", "USD"},
-                                           {".usda", "USD"},
-                                           {".usdc", "USD"},
-                                           {".usdz", "USD"},
+                                           {".usd", "USD", kOfUsd},
+                                           {".usda", "USD", kOfUsd},
+                                           {".usdc", "USD", kOfUsd},
+                                           {".usdz", "USD", kOfUsd},
                                            {".dae", "Collada"},
                                            {".3ds", "3DS"},
                                            {".max", "3ds Max's .max"},

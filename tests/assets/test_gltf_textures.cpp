@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "asset_test.h"
+#include "geometry/formats/gltf_part.h"
 #include "image/texture_file.h"
 #include "scene/scene_properties.h"
 #include "support/pictures.h"
@@ -90,6 +91,28 @@ TEST(GltfTextures, CountUpwards) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3d& p = mesh.positions[mesh.triangles[0][k]];
     EXPECT_EQ(mesh.uvs.at(0)[k], (std::array<float, 2>{float(p.x), float(1 - p.y)}));
+  }
+}
+
+// Claim: a part has the UVs of its base colour's texture, by texCoord or KHR_texture_transform; a texture of another set is
+// said. Source: glTF 2.0, textureInfo.texCoord. Fails if: TEXCOORD_0 is read always, or the other set's texture stays.
+TEST(GltfTextures, HaveTheUvsOfTheBaseColour) {
+  const Json image = {{"uri", "data:image/png;base64," + base64(png_of(200))}},
+             moved = {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"texCoord", 1}}}}}};
+  for (const Json& info : {Json{{"index", 0}, {"texCoord", 1}}, moved}) {
+    Json material = colored(info);
+    material["normalTexture"] = {{"index", 0}};
+    Asset asset = textured_triangle(material, image);
+    asset.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
+        asset.accessor<float>("VEC2", kFloat, {.25f, 1, .5f, 1, .75f, .5f});
+    const ScratchFolder folder;
+    put_bytes(folder.file("a.glb"), asset.glb());
+    const Scene scene = load_scene(folder.file("a.glb"));
+    EXPECT_TRUE(scene.shapes.at(0).reflectance_texture);
+    EXPECT_FALSE(scene.shapes.at(0).normal_map);
+    const GltfPart part = read_gltf_part(folder.file("a.glb"), "0/0", MeshUvs::required);
+    EXPECT_EQ(part.uvs, (std::vector<std::array<float, 2>>{{.25f, 0}, {.5f, 0}, {.75f, .5f}}));
+    EXPECT_TRUE(has(imported(asset).warnings, "normalTexture: textures[0] uses another set of UVs"));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "asset_files/gltf_accessor.h"
+#include "asset_files/gltf_uv_set.h"
 #include "geometry/formats/gltf_pose.h"
 #include "geometry/formats/gltf_triangles.h"
 
@@ -173,7 +174,7 @@ void read_normals(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPar
 
 /// glTF's v increases downwards.
 void read_uvs(const GltfModel& gltf, const GltfPrimitive& primitive, GltfPart& part) {
-  const auto found = primitive.attributes.find("TEXCOORD_0");
+  const auto found = primitive.attributes.find(uv_attribute(uv_set_of(gltf, primitive)));
   if (found == primitive.attributes.end()) return;
   part.uvs = read_pairs(gltf, found->second);
   check_count(gltf, found->second, part.uvs.size(), part, "UV");

@@ -17,7 +17,7 @@ import hashlib
 import json
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,7 @@ from ._opaline import BadInput, Error, Image, RunFailed, __version__, compare, i
 from . import _opaline
 
 __all__ = ["BadInput", "Error", "Image", "RunFailed", "Session", "__version__", "compare", "image", "presets",
-           "read_image", "render", "set_threads", "write_ply"]
+           "profile", "read_image", "render", "set_threads", "write_ply"]
 
 
 def write_ply(path: str, positions: np.ndarray, triangles: np.ndarray) -> None:
@@ -172,3 +172,40 @@ def _channels(pixels: np.ndarray) -> list[str]:
 def render(scene: str | os.PathLike | Mapping[str, Any], overrides: Mapping[str, Any] = {}) -> Image:
     """One image of a scene, see Session."""
     return Session(scene, overrides).render()
+
+
+def profile(medium: str | Mapping[str, Any], *, scene: str | os.PathLike | Mapping[str, Any] | None = None,
+            thickness: float | None = None, eta: float | None = None, g: float | None = None, walks: int | None = None,
+            seed: int = 1, profiles: Sequence[str] = ()) -> dict[str, Any]:
+    """Radial profiles of a medium beside random walks in it, with the numbers of `opaline profile`.
+
+    medium: a preset, coefficients as in a scene file ({"sigma_a": 0.01, "sigma_s": 2}, in 1/mm), or the name of a medium of
+    the scene, perhaps of layers. thickness: of a slab in mm; None: a half space. eta: index of refraction, inside over
+    outside, and g: mean cosine of the scattering angle at the same reduced scattering; None: the medium's. walks: per
+    channel and angle of incidence; None: as many as some seconds allow; 0: radial profiles alone.
+    profiles: names of the radial profiles, such as "dipole"; none: all of them. "tabulated" takes a second.
+
+    Returns the keys medium, eta, g, thickness (inf: a half space) and channels: R, G and B, wavelengths such as "620 nm", or
+    "all" for three equal ones. A channel has the number of `walks`, the fraction `unfinished`, and its faces: `back`, and for
+    a slab `through`. Fractions are of the transmitted flux. Estimates by walks have their standard error beside them, as
+    share and share_error. A face has
+
+    r               N + 1 distances from the beam in mm, the ends of N rings
+    models          by the name of the radial profile: share, the fraction leaving through the face; profile, N means of
+                    R(r) over the rings in 1/mm^2; within, N fractions nearer than the outer end; shape_difference, the
+                    largest difference of within / share from the walks in diffuse light
+    walks_diffuse   of light from all sides: share, uncollided, profile, within; angular_exit, M radiances over those of a
+                    Lambert emitter of the same flux, between the M + 1 cosines of `cosine`
+    walks_normal    the same of a beam along the normal
+    layers_normal   of layers: fraction by the diffusion equation in the stack
+
+    With walks, a channel has albedo_by_entry too: M reflected fractions of diffuse light by its cosine of incidence.
+
+    Raises BadInput for an unknown medium or profile, a medium without coefficients (subsurface_color), and values out of range. Other
+    threads of Python go on meanwhile; Ctrl-C ends it with KeyboardInterrupt. The same seed gives the same bits.
+    """
+    files = Session()  # of arrays in the scene
+    text = json.dumps(files._with_files(scene)) if isinstance(scene, Mapping) else None
+    path = "" if scene is None else "scene.json" if text is not None else os.fspath(scene)
+    given = json.dumps(files._with_files(medium)) if isinstance(medium, Mapping) else medium
+    return _opaline.profile(given, path, text, thickness, eta, g, walks, seed, list(profiles))
