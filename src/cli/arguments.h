@@ -10,8 +10,8 @@
 
 #include "benchmark/bench_command.h"
 #include "cache/blob_cache.h"
+#include "core/image_part.h"
 #include "core/log.h"
-#include "core/part.h"
 #include "image/picture_layers.h"
 #include "opaline/error.h"
 #include "view/view_server.h"
@@ -34,9 +34,9 @@ struct RenderArguments {
   LayerChoice layers{false, {"diffuse"}};  ///< layers of the EXR files, beside R, G, B and A
   std::string samples_ply;                 ///< empty: none
   std::string resume;                      ///< sums of an earlier `direct` render, to continue; empty: none
-  std::optional<Part> part;  ///< renders this part of the image only, to the one output, a .part
-  MergedParts merged;        ///< takes the sums from these parts
-  std::string cache;         ///< folder of stage results; empty: none
+  std::optional<ImagePart> part;  ///< renders this part of the image only, to the one output, a .part
+  MergedParts merged;             ///< takes the sums from these parts
+  std::string cache;              ///< folder of stage results; empty: none
   std::uint64_t cache_bytes = BlobCache::kDefaultBytes;
   std::vector<int> frames;  ///< empty: one image; otherwise output names contain ## for the number
   std::optional<int> frames_per_second;  ///< for a movie; none: 24

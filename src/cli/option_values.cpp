@@ -228,9 +228,9 @@ CLI::Validator layers_check() {
       {});
 }
 
-std::optional<Part> part_of(std::string_view text) {
+std::optional<ImagePart> part_of(std::string_view text) {
   constexpr std::size_t kMostParts = 4096;
-  Part part;
+  ImagePart part;
   const char* const end = text.data() + text.size();
   const auto number = std::from_chars(text.data(), end, part.number);
   if (number.ec != std::errc{} || number.ptr == end || *number.ptr != '/') return {};

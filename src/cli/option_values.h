@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/part.h"
+#include "core/image_part.h"
 #include "image/picture_layers.h"
 #include "input/schema.h"
 
@@ -45,7 +45,7 @@ CLI::Validator extension_check(const std::string& extension);
 std::optional<LayerChoice> layers_of(const std::string& text);
 CLI::Validator layers_check();
 /// "2/8"; empty unless 1 <= K <= N <= 4096.
-std::optional<Part> part_of(std::string_view text);
+std::optional<ImagePart> part_of(std::string_view text);
 CLI::Validator part_check();
 /// NAME=VALUE.
 CLI::Validator rung_check();

@@ -13,8 +13,8 @@
 #include "cache/content_hash.h"
 #include "cli/arguments.h"
 #include "core/atomic_file.h"
+#include "core/image_part.h"
 #include "core/input_file.h"
-#include "core/part.h"
 
 namespace opaline {
 
@@ -26,7 +26,7 @@ struct PartRecord {
   std::vector<std::string> overrides;
   LayerChoice layers;
   std::optional<int> frame;
-  Part part;
+  ImagePart part;
 };
 
 /// Record of a part to render.

@@ -25,7 +25,7 @@ constexpr std::size_t kTotals = 3;  // numbers per range of starts
 using PassPlace = std::tuple<std::size_t, std::size_t, std::size_t>;  // pass, source, channel
 
 /// The passes of one part.
-WalkShare share_of(const Part& part) {
+WalkShare share_of(const ImagePart& part) {
   const std::size_t passes = default_passes();
   return {(part.number - 1) * passes / part.count, part.number * passes / part.count, {}, {}};
 }
@@ -37,7 +37,7 @@ std::size_t most_parts(const Scene& scene) {
 /// A part of `volume`: the sums of each pass of each source and channel.
 class PartWalks {
  public:
-  PartWalks(Session& session, const Part&) : session_(session) {}
+  PartWalks(Session& session, const ImagePart&) : session_(session) {}
   ~PartWalks() { session_.store_walks({}); }
   PartWalks(const PartWalks&) = delete;
   PartWalks& operator=(const PartWalks&) = delete;
@@ -64,7 +64,7 @@ class PartWalks {
   }
 
   template <class AfterPass>
-  void run(StageRunner& stages, const Part& part, const AfterPass& after_pass) {
+  void run(StageRunner& stages, const ImagePart& part, const AfterPass& after_pass) {
     WalkShare share = share_of(part);
     share.is_known = [&](const StageKey& key, std::size_t channel, std::size_t pass) {
       return passes_.contains({pass, number_of(key), channel});
@@ -121,7 +121,7 @@ class PartWalks {
 /// A part of `direct`: the sums of its pixels.
 class PartPixels {
  public:
-  PartPixels(Session& session, const Part& part)
+  PartPixels(Session& session, const ImagePart& part)
       : session_(session), pixels_(pixels_of_part(session.scene().film, part)) {}
 
   void read(const PartFile& file) { add(file, state_); }
@@ -136,7 +136,7 @@ class PartPixels {
   }
 
   template <class AfterPass>
-  void run(StageRunner& stages, const Part& part, const AfterPass& after_pass) {
+  void run(StageRunner& stages, const ImagePart& part, const AfterPass& after_pass) {
     stages.run_unmeasured("rays", [&] { session_.prepare(&stages.monitor()); });
     stages.run("shading", [&] {
       add_direct_passes(
@@ -205,7 +205,7 @@ void run_part(StageRunner& stages, const RenderArguments& arguments, Session& se
 
 }  // namespace
 
-void check_part(const Part& part, const Scene& scene) {
+void check_part(const ImagePart& part, const Scene& scene) {
   const auto refused = [](const std::string& message, const std::string& expected, const std::string& got) {
     return Error(ErrorKind::bad_input, "--part", 0, 0, message, expected, got);
   };
@@ -221,7 +221,7 @@ void check_part(const Part& part, const Scene& scene) {
     throw refused("too many parts", fmt::format("at most {}", most_parts(scene)), std::to_string(part.count));
 }
 
-std::size_t part_bytes(const Part& part, const Session& session) {
+std::size_t part_bytes(const ImagePart& part, const Session& session) {
   if (session.scene().settings.method == Method::direct) return 0;  // sums as of the whole image
   std::size_t samples = 0;
   for (const BodyPlan& body : session.plan().groups) samples += body.samples;

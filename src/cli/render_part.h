@@ -12,10 +12,10 @@
 namespace opaline {
 
 /// error Error{bad_input}: the image has no parts, or fewer
-void check_part(const Part& part, const Scene& scene);
+void check_part(const ImagePart& part, const Scene& scene);
 
 /// Bytes of a part's sums, in addition to the plan.
-std::size_t part_bytes(const Part& part, const Session& session);
+std::size_t part_bytes(const ImagePart& part, const Session& session);
 
 /// Renders arguments.part to its file: some passes of `volume`, or all passes of some tiles of `direct`. Continues
 /// an incomplete file of the same part; returns false if it is complete. Stores the sums each minute.

@@ -34,7 +34,7 @@ std::size_t most_passes(const Settings& settings, const Film& film) {
 }
 
 /// In random order, so that all parts have about as many pixels with an object.
-std::vector<Rectangle> tiles_of_part(const Film& film, const Part& part) {
+std::vector<Rectangle> tiles_of_part(const Film& film, const ImagePart& part) {
   const std::vector<Rectangle> tiles = tiles_of(film);
   std::vector<std::size_t> order(tiles.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
@@ -231,7 +231,7 @@ DirectResult render_direct(const PrecomputeInput& input, DirectState& state,
   return result;
 }
 
-void add_direct_passes(const PrecomputeInput& input, const Part& part, DirectState& state,
+void add_direct_passes(const PrecomputeInput& input, const ImagePart& part, DirectState& state,
                        const std::function<void(const DirectState&)>& after_pass) {
   const DirectRenderer renderer(input, tiles_of_part(input.scene.film, part));
   state.sums.resize(renderer.pixels() * DirectState::kSums);
@@ -248,7 +248,7 @@ std::size_t direct_tiles(const Film& film) {
   return tiles_of(film).size();
 }
 
-std::vector<std::size_t> pixels_of_part(const Film& film, const Part& part) {
+std::vector<std::size_t> pixels_of_part(const Film& film, const ImagePart& part) {
   const Rectangle whole = rendered_part(film);
   std::vector<std::size_t> pixels;
   for (const Rectangle& tile : tiles_of_part(film, part))

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bodies/body.h"
-#include "core/part.h"
+#include "core/image_part.h"
 #include "render/render.h"
 
 namespace opaline {
@@ -43,11 +43,11 @@ DirectResult render_direct(const PrecomputeInput& input, DirectState& state,
 /// Continues the sums of one part of the tiles until Settings::entry_samples, without an image; the others stay 0.
 /// Each pixel has the bits of render_direct.
 /// in    as render_direct; part: count at most that of the tiles
-void add_direct_passes(const PrecomputeInput& input, const Part& part, DirectState& state,
+void add_direct_passes(const PrecomputeInput& input, const ImagePart& part, DirectState& state,
                        const std::function<void(const DirectState&)>& after_pass = {});
 /// Tiles of an image, and pixels of a part, as numbers in DirectState::sums.
 std::size_t direct_tiles(const Film& film);
-std::vector<std::size_t> pixels_of_part(const Film& film, const Part& part);
+std::vector<std::size_t> pixels_of_part(const Film& film, const ImagePart& part);
 
 /// Mean of a pixel's passes and its variance; pixel: index into DirectState::sums.
 struct DirectEstimate {

@@ -7,7 +7,7 @@
 namespace opaline {
 
 /// One of several parts of about equal work.
-struct Part {
+struct ImagePart {
   std::size_t number = 1;  ///< from 1 to count
   std::size_t count = 1;
 };
