@@ -16,10 +16,10 @@ build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev 
 # The pages of the view and of reports are tested in a browser, 98 MB to fetch and 300 MB on the disk.
 # shellcheck disable=SC2034
 test_packages=(libgtest-dev parallel clang-format chromium-headless-shell python3-jsonschema python3-dev python3-venv)
-# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. The others are for
-# Blender.
+# Assets by many programs, some of them broken on purpose: 21 MB to fetch and 74 MB on the disk. Slurm and munge are
+# for the templates of farms, the others for Blender.
 # shellcheck disable=SC2034
-long_test_packages=(assimp-testmodels libvulkan1 libxrender1 libxi6 libxkbcommon0 libsm6 libgl1 libegl1
+long_test_packages=(assimp-testmodels slurm-wlm munge libvulkan1 libxrender1 libxi6 libxkbcommon0 libsm6 libgl1 libegl1
   libxxf86vm1 libxfixes3)
 
 log=$root/scenes/out/${0##*/}.log
@@ -177,6 +177,19 @@ fetch_blender() {
     touch "$folder/done"
   else
     say "Blender cannot be had from PyPI: the tests against it are skipped" >&2
+    rm -rf "$folder"
+  fi
+}
+
+# Checks and runs the templates of Open Job Description; the same holds.
+fetch_openjd() {
+  local folder=$root/build-openjd
+  [[ ! -e $folder/done ]] || return 0
+  say "fetching openjd-cli from PyPI"
+  if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet openjd-cli; then
+    touch "$folder/done"
+  else
+    say "openjd-cli cannot be had from PyPI: its templates are not tested" >&2
     rm -rf "$folder"
   fi
 }

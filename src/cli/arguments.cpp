@@ -81,9 +81,25 @@ void check_movie(const RenderArguments& render, const std::string& path, bool ha
     throw usage_error("more than one movie", "one output that ends in .mp4");
 }
 
+void check_part_output(const RenderArguments& render) {
+  const auto parts = std::ranges::count(render.outputs, OutputFormat::part, output_format);
+  if (!render.part && parts > 0)
+    throw usage_error("a .part file holds one part of an image",
+                      "--part K/N, or an output that ends in .exr");
+  if (!render.part) return;
+  if (render.outputs.size() != 1 || parts != 1)
+    throw usage_error("--part writes a part of the image", "one output that ends in .part");
+  if (render.frames.size() > 1) throw usage_error("--part renders a part of one image", "--frames N");
+  if (!render.resume.empty() || !render.samples_ply.empty() || render.target_error || render.time_budget ||
+      render.verify)
+    throw usage_error(
+        "--part cannot be combined with --resume, --samples-ply, --target-error, --time-budget or --verify");
+}
+
 void check_outputs(const RenderArguments& render) {
   for (const std::string& path : render.outputs)
     if (output_format(path) == OutputFormat::unknown) throw unknown_format(path);
+  check_part_output(render);
   std::vector<std::string> files = render.outputs;
   for (const std::string& more : {render.samples_ply, render.resume})
     if (!more.empty()) files.push_back(more);
@@ -111,7 +127,7 @@ void check_outputs(const RenderArguments& render) {
 void check_layers_have_a_file(const RenderArguments& render, const std::string& asked) {
   const bool has_exr = std::ranges::any_of(
       render.outputs, [](const std::string& path) { return output_format(path) == OutputFormat::exr; });
-  if (!asked.empty() && asked != "none" && !has_exr)
+  if (!asked.empty() && asked != "none" && !has_exr && !render.part)
     throw usage_error("--layers requires an EXR output", "-o FILE.exr", "'" + render.outputs.front() + "'");
 }
 
@@ -329,6 +345,7 @@ struct Parsed {
   RenderArguments render;
   InfoArguments info;
   CompareArguments compare;
+  MergeArguments merge;
   PrecomputeArguments precompute;
   BenchArguments bench;
   CacheArguments cache;
@@ -347,6 +364,7 @@ void add_commands(CLI::App& app, Parsed& parsed) {
   add_render_options(command("render", "render a scene to EXR and PNG files"), parsed.render, options);
   add_turntable_options(command("turntable", "render a turn around a scene or asset, as frames or a movie"),
                         parsed.render, options);
+  add_merge_options(command("merge", "add the parts of an image (render --part)"), parsed.merge, options);
   add_view_options(command("view", "edit a scene in the browser, with a live preview"), parsed.view, options);
   add_precompute_options(command("precompute", "compute the stages of a scene and store them in a cache"),
                          parsed.precompute, options);
@@ -368,8 +386,17 @@ void add_commands(CLI::App& app, Parsed& parsed) {
   command("completion", "print a completion script for bash").group("");
 }
 
+MergeArguments checked(MergeArguments merge, const Parsed& parsed) {
+  check_outputs(merge.render);
+  merge.render.log = merge.log;
+  merge.render.program = parsed.program;
+  merge.render.command_line = shell_quoted(parsed.program) + parsed.words;
+  return merge;
+}
+
 RenderArguments checked(RenderArguments render, const Options& options) {
   if (!options.layers.empty()) render.layers = *layers_of(options.layers);
+  if (!options.part.empty()) render.part = *part_of(options.part);
   check_outputs(render);
   if (render.frames_per_second &&
       std::ranges::find(render.outputs, OutputFormat::mp4, output_format) == render.outputs.end())
@@ -414,6 +441,7 @@ Command command_of(const std::string& name, Parsed parsed) {
   if (name == "view") return with_frames(std::move(parsed.view));
   if (name == "precompute") return with_frames(std::move(parsed.precompute));
   if (name == "info") return with_overrides(std::move(parsed.info));
+  if (name == "merge") return checked(with_log(std::move(parsed.merge)), parsed);
   parsed.render.command_line = shell_quoted(parsed.program) + parsed.words;
   if (name == "turntable") parsed.render.frames = parse_frames("1-" + std::to_string(options.turn_frames));
   RenderArguments render = checked(with_frames(std::move(parsed.render)), options);
@@ -425,10 +453,11 @@ Command command_of(const std::string& name, Parsed parsed) {
 
 OutputFormat output_format(const std::string& path) {
   const std::string extension = in_lower_case(std::filesystem::path(path).extension().string());
-  return extension == ".exr"   ? OutputFormat::exr
-         : extension == ".png" ? OutputFormat::png
-         : extension == ".mp4" ? OutputFormat::mp4
-                               : OutputFormat::unknown;
+  return extension == ".exr"    ? OutputFormat::exr
+         : extension == ".png"  ? OutputFormat::png
+         : extension == ".mp4"  ? OutputFormat::mp4
+         : extension == ".part" ? OutputFormat::part
+                                : OutputFormat::unknown;
 }
 
 Command parse_arguments(int argc, const char* const* argv) {

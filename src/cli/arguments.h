@@ -11,12 +11,19 @@
 #include "benchmark/bench_command.h"
 #include "benchmark/profile_request.h"
 #include "cache/blob_cache.h"
+#include "core/image_part.h"
 #include "core/log.h"
 #include "image/picture_layers.h"
 #include "opaline/error.h"
 #include "view/view_server.h"
 
 namespace opaline {
+
+/// Files of all parts of an image, in order.
+struct MergedParts {
+  std::vector<std::string> files;  ///< empty: no parts
+  std::string hash;                ///< their scene_hash or frame_hash
+};
 
 struct RenderArguments {
   std::string program;       ///< as called
@@ -28,7 +35,9 @@ struct RenderArguments {
   LayerChoice layers{false, {"diffuse"}};  ///< layers of the EXR files, beside R, G, B and A
   std::string samples_ply;                 ///< empty: none
   std::string resume;                      ///< sums of an earlier `direct` render, to continue; empty: none
-  std::string cache;                       ///< folder of stage results; empty: none
+  std::optional<ImagePart> part;  ///< renders this part of the image only, to the one output, a .part
+  MergedParts merged;             ///< takes the sums from these parts
+  std::string cache;              ///< folder of stage results; empty: none
   std::uint64_t cache_bytes = BlobCache::kDefaultBytes;
   std::vector<int> frames;  ///< empty: one image; otherwise output names contain ## for the number
   std::optional<int> frames_per_second;  ///< for a movie; none: 24
@@ -44,6 +53,13 @@ struct RenderArguments {
 /// Renders frames, as many as those of `render`, with the camera turned once around its look_at.
 struct TurntableArguments {
   RenderArguments render;
+  Log log;
+};
+
+/// Adds parts to the image of their command.
+struct MergeArguments {
+  std::vector<std::string> parts;
+  RenderArguments render;  ///< outputs, threads, log and names of the program only
   Log log;
 };
 
@@ -118,11 +134,11 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ShowText, RenderArguments, TurntableArguments, InfoArguments, CompareArguments,
-                             BenchArguments, CacheArguments, PrecomputeArguments, ProfileArguments,
-                             ImportArguments, ViewArguments>;
+using Command = std::variant<ShowText, RenderArguments, TurntableArguments, MergeArguments, InfoArguments,
+                             CompareArguments, BenchArguments, CacheArguments, PrecomputeArguments,
+                             ProfileArguments, ImportArguments, ViewArguments>;
 
-enum class OutputFormat { exr, png, mp4, unknown };
+enum class OutputFormat { exr, png, mp4, part, unknown };
 OutputFormat output_format(const std::string& path);  ///< by extension, upper or lower case
 /// error Error{bad_input}: an unknown option, an invalid value, or an output other than EXR or PNG
 Command parse_arguments(int argc, const char* const* argv);

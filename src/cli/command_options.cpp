@@ -20,6 +20,12 @@ void add_frames_option(CLI::App& app, Options& options, const char* meaning) {
       ->type_name("FRAMES");
 }
 
+void add_log_option(CLI::App& app, Options& options) {
+  app.add_option("--log", options.log, "format of the log: text, or json (one object per line on stdout)")
+      ->check(log_check())
+      ->type_name("text|json");
+}
+
 /// The scene's documentation without its Markdown.
 std::string plain_text(std::string_view markdown) {
   std::string text;
@@ -118,9 +124,7 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options) {
       ->transform(millimetres_of())
       ->type_name("LENGTH");
   add_allow_outside(app);
-  app.add_option("--log", options.log, "format of the log: text, or json (one object per line on stdout)")
-      ->check(log_check())
-      ->type_name("text|json");
+  add_log_option(app, options);
 }
 
 void add_picture_options(CLI::App& app, Options& options) {
@@ -158,6 +162,11 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
                  "minute, at the end and on Ctrl-C")
       ->type_name("FILE")
       ->check(extension_check(".exr"));
+  app.add_option("--part", options.part,
+                 "direct, volume: render part K of N only, e.g. 2/8, to -o FILE.part; opaline merge adds all "
+                 "parts to the image")
+      ->check(part_check())
+      ->type_name("K/N");
   add_frames_option(app, options,
                     "## in output and mesh names stands for the frame number; existing frames of the same "
                     "scene are skipped");
@@ -206,6 +215,20 @@ void add_view_options(CLI::App& app, ViewArguments& view, Options& options) {
   app.add_flag("--quiet", view.log.quiet, "print the URL and errors only");
   add_picture_options(app, options);
   app.footer(kViewNotes);
+}
+
+void add_merge_options(CLI::App& app, MergeArguments& merge, Options& options) {
+  app.add_option("PART", merge.parts,
+                 "all parts of one image, written by opaline render --part, in any order")
+      ->required()
+      ->type_name("FILE");
+  add_repeatable(app, "-o,--output", merge.render.outputs, "image to write, .exr or .png; repeatable")
+      ->required()
+      ->type_name("FILE");
+  add_threads(app, merge.render.threads, "maximum number of threads (default: one per core)");
+  app.add_flag("--quiet", merge.log.quiet, "print warnings and errors only");
+  add_log_option(app, options);
+  app.footer(kMergeNotes);
 }
 
 void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options) {

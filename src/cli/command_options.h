@@ -30,7 +30,7 @@ struct Options {
   std::vector<std::string> rungs;
   std::optional<std::string> frames;
   int turn_frames = 48;
-  std::string layers;
+  std::string layers, part;
 };
 
 /// Option for a key of a scene: "film.crop" -> "--crop"; empty if there is none.
@@ -42,6 +42,7 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options);
 void add_picture_options(CLI::App& app, Options& options);
 void add_render_options(CLI::App& app, RenderArguments& render, Options& options);
 void add_turntable_options(CLI::App& app, RenderArguments& render, Options& options);
+void add_merge_options(CLI::App& app, MergeArguments& merge, Options& options);
 void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options);
 void add_import_options(CLI::App& app, ImportArguments& import);
 void add_view_options(CLI::App& app, ViewArguments& view, Options& options);

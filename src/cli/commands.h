@@ -15,6 +15,11 @@ void render_command(RenderArguments arguments);
 /// error as render_command
 void turntable_command(const TurntableArguments& arguments);
 
+/// Adds the parts of an image and renders it.
+/// error Error{bad_input} naming the file: not a part, incomplete, given twice, of another image; or naming the
+///       missing parts; as render_command
+void merge_command(const MergeArguments& arguments);
+
 /// Writes an asset as a scene file, and prints the translation of each value.
 /// error Error{bad_input}: not an asset, or broken; Error{run_failed}: the scene file cannot be written
 void import_command(const ImportArguments& arguments);

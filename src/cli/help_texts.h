@@ -52,6 +52,20 @@ even the cheapest image exceeds the budget, opaline renders it and a warning sta
 --spp and settings.light_samples stay as you set them. The choice depends on the clock; the "repeat with" command does
 not. With --method direct, opaline stops when the budget ends.)";
 
+inline constexpr const char* kMergeNotes =
+    R"(Each machine of a farm renders a part with the same options. The merged image has the bytes of the one that opaline
+render without --part writes, with its layers and metadata. volume has at most 16 parts, each with some of its passes of
+random walks; direct has at most as many as the image has tiles of 16 x 16 pixels, each with all passes over some of the
+tiles. The image needs a fixed number of passes, so --until-error has no parts. An interrupted part is resumed by
+repeating its command. merge reads the scene again, under the path where the parts were rendered.
+
+Examples:
+  opaline render bunny.json --method volume --part 1/2 -o 1.part
+  opaline render bunny.json --method volume --part 2/2 -o 2.part
+  opaline merge 1.part 2.part -o bunny.exr
+
+Exit codes: as opaline render.)";
+
 inline constexpr const char* kTurntableNotes =
     R"(The camera circles its look_at once, counter-clockwise seen from above; camera.up is the axis. The lights stay with the
 scene. All frames share the light at the samples, so a frame costs little more than with lambert. A repeated command

@@ -66,6 +66,7 @@ int run(const opaline::Command& command) {
   if (const auto* render = std::get_if<opaline::RenderArguments>(&command)) opaline::render_command(*render);
   if (const auto* turntable = std::get_if<opaline::TurntableArguments>(&command))
     opaline::turntable_command(*turntable);
+  if (const auto* merge = std::get_if<opaline::MergeArguments>(&command)) opaline::merge_command(*merge);
   if (const auto* precompute = std::get_if<opaline::PrecomputeArguments>(&command))
     opaline::precompute_command(*precompute);
   if (const auto* info = std::get_if<opaline::InfoArguments>(&command)) opaline::info_command(*info);
@@ -98,6 +99,7 @@ opaline::Log log_of(const opaline::Command& command) {
 bool is_unwanted_log(const opaline::Command& command) {
   const bool is_log = std::holds_alternative<opaline::RenderArguments>(command) ||
                       std::holds_alternative<opaline::TurntableArguments>(command) ||
+                      std::holds_alternative<opaline::MergeArguments>(command) ||
                       std::holds_alternative<opaline::PrecomputeArguments>(command) ||
                       std::holds_alternative<opaline::ViewArguments>(command);
   return is_log && opaline::was_started_without_output();

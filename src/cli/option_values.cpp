@@ -228,6 +228,23 @@ CLI::Validator layers_check() {
       {});
 }
 
+std::optional<ImagePart> part_of(std::string_view text) {
+  constexpr std::size_t kMostParts = 4096;
+  ImagePart part;
+  const char* const end = text.data() + text.size();
+  const auto number = std::from_chars(text.data(), end, part.number);
+  if (number.ec != std::errc{} || number.ptr == end || *number.ptr != '/') return {};
+  const auto count = std::from_chars(number.ptr + 1, end, part.count);
+  if (count.ec != std::errc{} || count.ptr != end) return {};
+  if (part.number < 1 || part.number > part.count || part.count > kMostParts) return {};
+  return part;
+}
+
+CLI::Validator part_check() {
+  return check("a part such as 2/8, of at most 4096",
+               [](const std::string& text) { return part_of(text).has_value(); });
+}
+
 CLI::Validator rung_check() {
   return check("a setting such as near_field=false", [](const std::string& text) {
     const std::size_t equals = text.find('=');

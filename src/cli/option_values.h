@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/image_part.h"
 #include "image/picture_layers.h"
 #include "input/schema.h"
 
@@ -43,6 +44,9 @@ CLI::Validator extension_check(const std::string& extension);
 /// "diffuse,N", "all" or "none"; empty if a name is not a layer's.
 std::optional<LayerChoice> layers_of(const std::string& text);
 CLI::Validator layers_check();
+/// "2/8"; empty unless 1 <= K <= N <= 4096.
+std::optional<ImagePart> part_of(std::string_view text);
+CLI::Validator part_check();
 /// NAME=VALUE.
 CLI::Validator rung_check();
 

@@ -14,6 +14,7 @@
 #include "cli/movie.h"
 #include "cli/quality.h"
 #include "cli/render_outputs.h"
+#include "cli/render_part.h"
 #include "cli/report.h"
 #include "cli/resumable_state.h"
 #include "cli/stages.h"
@@ -88,11 +89,16 @@ std::string resume_hint(const RenderArguments& arguments, const Session& session
                      arguments.resume, arguments.command_line);
 }
 
-DirectResult shade_direct(const RenderArguments& arguments, const Session& session, Monitor& monitor) {
+DirectResult shade_direct(const RenderArguments& arguments, Session& session, Monitor& monitor) {
   if (arguments.time_budget)
     return direct_within({session.scene(), session.world(), session.rays(), session.plan(), &monitor},
                          budget_left(arguments, session.scene()),
                          trial_writing(arguments, session.scene().film));
+  if (!arguments.merged.files.empty()) {
+    DirectState merged = merged_direct(arguments.merged, session);
+    return render_direct({session.scene(), session.world(), session.rays(), session.plan(), &monitor},
+                         merged);
+  }
   ResumableState resumable(arguments, session.scene());
   try {
     DirectResult result =
@@ -112,6 +118,10 @@ DirectResult shade_direct(const RenderArguments& arguments, const Session& sessi
 void prepare(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   const auto run = [&] { stages.run_unmeasured("rays", [&] { session.prepare(&stages.monitor()); }); };
   if (session.scene().settings.method != Method::volume) return run();
+  if (!arguments.merged.files.empty()) {
+    const MergedWalks walks(arguments.merged, session);
+    return run();
+  }
   ResumableWalks walks(arguments.resume, session);
   try {
     run();
@@ -188,8 +198,9 @@ struct Shared {
 /// error Error{bad_input}: an option without effect on the method
 void check_method_options(const RenderArguments& arguments, const Scene& scene) {
   const Method method = scene.settings.method;
+  if (arguments.part) check_part(*arguments.part, scene);
   const bool accumulates =
-      !arguments.resume.empty() ||
+      !arguments.resume.empty() || arguments.part ||
       (method == Method::direct && (arguments.time_budget || scene.settings.until_error));
   if (accumulates && !scene.other_wavelengths.empty())
     throw Error(
@@ -237,6 +248,9 @@ std::optional<std::string> load(StageRunner& stages, const RenderArguments& argu
     std::string hash = frame ? frame_hash(arguments.scene, arguments.overrides, scene)
                              : scene_hash(arguments.scene, arguments.overrides, scene);
     if (frame && is_rendered(arguments, hash, *frame)) return std::nullopt;
+    if (!arguments.merged.files.empty() && hash != arguments.merged.hash)
+      throw bad_file(arguments.scene, "differs from the scene of the parts, or its files do",
+                     "the files of opaline render --part");
     if (frame) session.expect_pictures(scene.camera_frames);
     session.hold_view(holds_view(arguments, frame.has_value()));
     session.edit(std::move(scene));
@@ -262,8 +276,10 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   check_denoising(arguments, scene);
   check_layers(arguments.layers, scene);
   check_precompute(arguments, scene, session.plan());
-  const std::size_t more_bytes = asked_layer_bytes(arguments.layers, scene) +
-                                 (holds_view(arguments, is_frame) ? bytes_of_view(session) : 0);
+  const std::size_t more_bytes =
+      arguments.part ? part_bytes(*arguments.part, session)
+                     : asked_layer_bytes(arguments.layers, scene) +
+                           (holds_view(arguments, is_frame) ? bytes_of_view(session) : 0);
   check_memory(scene, session.plan(), more_bytes);
   if (arguments.target_error) print_trial(arguments.log, seconds_of_trial(session));
   KnownErrors errors = choose_settings(stages, arguments, session);
@@ -362,6 +378,11 @@ bool render_scene(const RenderArguments& arguments, Session& session, const Shar
   }
   const Scene& scene = session.scene();
   KnownErrors errors = plan(stages, arguments, session, shared, frame.has_value());
+  if (arguments.part) {
+    const bool is_new = render_part(stages, arguments, session, *hash, frame);
+    print_outputs(arguments.log, is_new ? "wrote" : "skipped", arguments.outputs);
+    return is_new;
+  }
   Shading shading = make_picture(stages, arguments, session, shared, frame.has_value());
   std::optional<Error> stopped;  // by Ctrl-C during the error measurement; the image is complete
   try {

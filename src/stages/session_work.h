@@ -31,12 +31,22 @@ struct SessionWork {
   std::size_t walk_passes = 0;  ///< random walks over all samples of a body, per channel and light source
 };
 
+/// The passes of random walks that this process traces for an image; other processes trace the others.
+struct WalkShare {
+  std::size_t first = 0, last = 0;  ///< passes first to last - 1
+  /// Sums of a pass, of the source with the key.
+  std::function<bool(const StageKey& key, std::size_t channel, std::size_t pass)> is_known;
+  std::function<void(const StageKey& key, std::size_t channel, std::size_t pass, PassSums sums)> keep;
+};
+
 /// Additional store for the sums of random walks.
 struct WalkStore {
   /// Stored sums of a light source (stage_keys.h); none: nothing stored.
   std::function<std::optional<SourceSums>(const StageKey& key)> find;
   /// Called before the walks in a body, with the stored sums, and after each pass.
   std::function<void(std::span<const StageKey> keys, const VolumeSums& sums)> keep;
+  /// If present, `prepare` traces these passes only, and the session has no image.
+  std::optional<WalkShare> share = {};
 };
 
 }  // namespace opaline

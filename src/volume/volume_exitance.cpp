@@ -177,25 +177,15 @@ class Evaluation {
   std::vector<Rgb> weights_;
 };
 
-void add_pass(WalkSums& sums, std::span<const WalkCounts> chunks) {
-  const std::size_t cells = chunks[0].flux.size();
-  sums.flux.resize(cells);
-  sums.roots.resize(cells);
-  parallel_chunks(cells, 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double flux = 0;
-      for (const WalkCounts& chunk : chunks) flux += double(chunk.flux[i]);
-      const double root = double(sums.roots[i]);
-      sums.flux[i] = float(double(sums.flux[i]) + flux);
-      sums.roots[i] = float(std::sqrt(root * root + flux * flux));
-    }
+PassSums sums_of(std::span<const WalkCounts> chunks) {
+  PassSums pass;
+  pass.flux.resize(chunks[0].flux.size());
+  parallel_chunks(pass.flux.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i)
+      for (const WalkCounts& chunk : chunks) pass.flux[i] += double(chunk.flux[i]);
   });
-  for (const WalkCounts& chunk : chunks) {
-    sums.entered += chunk.entered;
-    sums.lost += chunk.lost;
-    sums.stopped += chunk.stopped;
-  }
-  ++sums.passes;
+  for (const WalkCounts& chunk : chunks) pass.totals.push_back({chunk.entered, chunk.lost, chunk.stopped});
+  return pass;
 }
 
 class Walks {
@@ -209,30 +199,40 @@ class Walks {
   /// Runs one pass of each of these jobs, in parallel over all: a single pass would leave threads idle at its
   /// end.
   void add_passes(std::span<const Job> jobs) const {
+    std::vector<WalkPass> passes;
+    for (const Job& job : jobs) passes.push_back({job.source, job.channel, sums(job).passes});
+    walk(passes, [&](const WalkPass& pass, const PassSums& result) {
+      add_pass(sums({pass.source, pass.channel}), result);
+    });
+  }
+
+  /// Calls use(pass, its sums) in order.
+  template <class Use>
+  void walk(std::span<const WalkPass> passes, const Use& use) const {
     const std::size_t together =
         std::clamp<std::size_t>(kMostCounts / (BodyWalks::kChunks * input_.samples.size()), 1, 8);
-    for (std::size_t first = 0; first < jobs.size(); first += together)
-      add_together(jobs.subspan(first, std::min(together, jobs.size() - first)));
+    for (std::size_t first = 0; first < passes.size(); first += together)
+      walk_together(passes.subspan(first, std::min(together, passes.size() - first)), use);
   }
 
  private:
   static constexpr std::size_t kMostCounts = std::size_t(1) << 26;  // in memory at once
 
-  void add_together(std::span<const Job> jobs) const {
+  template <class Use>
+  void walk_together(std::span<const WalkPass> passes, const Use& use) const {
     constexpr std::size_t kChunks = BodyWalks::kChunks;
     std::map<std::size_t, SphereExits> exits;
-    for (const Job& job : jobs)
-      if (const std::size_t pass = sums(job).passes; !exits.contains(pass))
-        exits.emplace(pass, walks_.exits_of(pass));
-    std::vector<WalkCounts> counts(jobs.size() * kChunks);
+    for (const WalkPass& walked : passes)
+      if (!exits.contains(walked.pass)) exits.emplace(walked.pass, walks_.exits_of(walked.pass));
+    std::vector<WalkCounts> counts(passes.size() * kChunks);
     parallel_chunks(counts.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
-      const Job& job = jobs[i / kChunks];
-      const std::size_t pass = sums(job).passes;
-      counts[i] = walks_.walk(of(job), pass, i % kChunks, exits.at(pass));
+      const WalkPass& walked = passes[i / kChunks];
+      counts[i] =
+          walks_.walk(of({walked.source, walked.channel}), walked.pass, i % kChunks, exits.at(walked.pass));
       advance(input_.monitor, 1);
     });
-    for (std::size_t j = 0; j < jobs.size(); ++j)
-      add_pass(sums(jobs[j]), std::span(counts).subspan(j * kChunks, kChunks));
+    for (std::size_t p = 0; p < passes.size(); ++p)
+      use(passes[p], sums_of(std::span(counts).subspan(p * kChunks, kChunks)));
   }
 
   WalkJob of(const Job& job) const {
@@ -345,6 +345,44 @@ void walk_volume(const VolumeInput& input, VolumeSums& sums,
     walks.add_passes(jobs);
     if (after_pass) after_pass(sums);
   }
+}
+
+std::size_t default_passes() {
+  return passes_for(kDefaultWalks);
+}
+
+void walk_passes(const VolumeInput& input, std::size_t first, std::size_t last,
+                 const std::function<bool(const WalkPass&)>& is_known,
+                 const std::function<void(const WalkPass&, PassSums)>& keep) {
+  for (const HomogeneousMedium& medium : input.media) check_medium(medium);
+  VolumeSums sums;
+  sums.sources.resize(sources_of(input));
+  if (input.samples.empty()) return;
+  const Walks walks(input, sums);
+  std::vector<WalkPass> wanted;
+  for (std::size_t pass = first; pass < last; ++pass)
+    for (const Job& job : walks.jobs())
+      if (const WalkPass walked{job.source, job.channel, pass}; !is_known(walked)) wanted.push_back(walked);
+  if (input.monitor != nullptr) input.monitor->begin("random walks", wanted.size() * BodyWalks::kChunks);
+  walks.walk(wanted, keep);
+}
+
+void add_pass(WalkSums& sums, const PassSums& pass) {
+  sums.flux.resize(pass.flux.size());
+  sums.roots.resize(pass.flux.size());
+  parallel_chunks(pass.flux.size(), 4096, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double root = double(sums.roots[i]), flux = pass.flux[i];
+      sums.flux[i] = float(double(sums.flux[i]) + flux);
+      sums.roots[i] = float(std::sqrt(root * root + flux * flux));
+    }
+  });
+  for (const auto& [entered, lost, stopped] : pass.totals) {
+    sums.entered += entered;
+    sums.lost += lost;
+    sums.stopped += stopped;
+  }
+  ++sums.passes;
 }
 
 VolumeExitance exitance_of(const VolumeInput& input, const VolumeSums& sums) {

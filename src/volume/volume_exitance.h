@@ -59,6 +59,18 @@ struct VolumeSums {
   std::vector<SourceSums> sources;
 };
 
+/// A pass of one source and channel.
+struct WalkPass {
+  std::size_t source = 0, channel = 0, pass = 0;
+};
+
+/// Result of a pass. Passes added in their order give the bits of the sums of walk_volume.
+struct PassSums {
+  std::vector<double> flux;  ///< per sample, as WalkSums::flux
+  /// Per range of starts: entered, lost and stopped, as in WalkSums.
+  std::vector<std::array<double, 3>> totals;
+};
+
 struct VolumeExitance {
   std::vector<RgbF>
       exitance;             ///< one per sample: radiant exitance, W/mm^2, the mean over its cell's outer part
@@ -87,6 +99,18 @@ bool walks_by_light(const VolumeInput& input);
 /// error Error{interrupted}
 void walk_volume(const VolumeInput& input, VolumeSums& sums,
                  const std::function<void(const VolumeSums&)>& after_pass = {});
+
+/// Passes of each source and channel without until_error.
+std::size_t default_passes();
+
+/// Walks some of the passes of an image without until_error: those numbered from `first` to `last` - 1 and not
+/// known. Reports each.
+/// error Error{interrupted}
+void walk_passes(const VolumeInput& input, std::size_t first, std::size_t last,
+                 const std::function<bool(const WalkPass&)>& is_known,
+                 const std::function<void(const WalkPass&, PassSums)>& keep);
+
+void add_pass(WalkSums& sums, const PassSums& pass);
 
 /// Exitance from the sums, with the colours of the lights.
 VolumeExitance exitance_of(const VolumeInput& input, const VolumeSums& sums);

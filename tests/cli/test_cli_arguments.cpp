@@ -47,8 +47,8 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"rendr", scene}, "unknown command 'rendr' (did you mean 'render'?)"},
       {{"ifno", scene, "--spp", "4"}, "unknown command 'ifno' (did you mean 'info'?)"},
       {{"draw", scene},
-       "unknown command 'draw' (expected one of render, turntable, view, precompute, info, import, compare, "
-       "bench, "
+       "unknown command 'draw' (expected one of render, turntable, merge, view, precompute, info, import, "
+       "compare, bench, "
        "profile, "
        "cache, schema)"},
       {{"cache", "lss", out}, "unknown command 'lss' (did you mean 'ls'?)"},
@@ -128,7 +128,8 @@ TEST(CliArguments, MistakesAreAnsweredInOneLine) {
       {{"profile", "marble", "--g", "x"}, "--g: expected a number, got x"},
       {{"render", scene, "-o", out, "--res", "3x3"}, "(did you mean '--resolution' or '--resume'?)"},
       {{"view", scene, "-o", out},
-       "unknown option '-o' (an option of opaline render, turntable, import, bench, profile); see opaline "
+       "unknown option '-o' (an option of opaline render, turntable, merge, import, bench, profile); see "
+       "opaline "
        "view --help"},
       {{"info", scene, "--target-error", "5%"},
        "'--target-error' (an option of opaline render, turntable); see"},

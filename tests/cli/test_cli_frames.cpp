@@ -300,7 +300,8 @@ TEST(CliFrames, ScriptsInOtherPlaces) {
   fs::create_directories(clone / "scenes");
   fs::create_directories(clone / "build/src");
   fs::create_directories(shot.path / "spool");
-  fs::copy_file(OPALINE_SCENES_DIR "/frames.sbatch", clone / "scenes/frames.sbatch");
+  for (const char* script : {"frames.sbatch", "find-program"})
+    fs::copy_file(OPALINE_SCENES_DIR / fs::path(script), clone / "scenes" / script);
   fs::copy_file(OPALINE_SCENES_DIR "/frames.sbatch", shot.path / "spool/slurm_script");
   fs::create_symlink(OPALINE_PROGRAM, clone / "build/src/opaline");
   put_bytes(shot.file("spool/scontrol"), "#!/bin/sh\necho 'JobId=7 JobName=opaline'\necho '   Command=" +

@@ -5,8 +5,10 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/parallel.h"
+#include "core/random.h"
 #include "diffusion/diffuse_profile.h"
 #include "methods/direct/direct_field.h"
 #include "render/tile_renderer.h"
@@ -31,9 +33,24 @@ std::size_t most_passes(const Settings& settings, const Film& film) {
   return (samples + per_pass - 1) / per_pass;
 }
 
+/// In random order, so that all parts have about as many pixels with an object.
+std::vector<Rectangle> tiles_of_part(const Film& film, const ImagePart& part) {
+  const std::vector<Rectangle> tiles = tiles_of(film);
+  std::vector<std::size_t> order(tiles.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::ranges::sort(order, {}, [](std::size_t tile) { return hash_bits(0, tile); });
+  std::vector<Rectangle> own;
+  for (std::size_t i = part.number - 1; i < order.size(); i += part.count) own.push_back(tiles[order[i]]);
+  return own;
+}
+
+std::size_t pixel_number(const Rectangle& part, int x, int y) {
+  return std::size_t(y - part.y0) * std::size_t(part.x1 - part.x0) + std::size_t(x - part.x0);
+}
+
 class DirectRenderer {
  public:
-  explicit DirectRenderer(const PrecomputeInput& input)
+  DirectRenderer(const PrecomputeInput& input, std::vector<Rectangle> tiles)
       : scene_(input.scene),
         render_input_{input.scene, input.world, input.rays, {}, input.monitor},
         samplers_(make_samplers(input)),
@@ -41,7 +58,7 @@ class DirectRenderer {
         shader_(render_input_, sources_),
         tile_renderer_(render_input_, shader_),
         part_(rendered_part(input.scene.film)),
-        tiles_(tiles_of(input.scene.film)) {}
+        tiles_(std::move(tiles)) {}
 
   std::size_t pixels() const { return std::size_t(part_.x1 - part_.x0) * std::size_t(part_.y1 - part_.y0); }
   std::size_t work_per_pass() const { return tiles_.size() * std::size_t(scene_.film.samples_per_pixel); }
@@ -125,10 +142,8 @@ class DirectRenderer {
       const Rectangle& tile = tiles_[begin];
       const TileRenderer::Tile rendered = tile_renderer_.render(tile, pass);
       if (rendered.sums.empty()) return;
-      for_each_pixel(tile, part_, [&](int x, int y, std::size_t i) {
-        use(std::size_t(y - part_.y0) * std::size_t(part_.x1 - part_.x0) + std::size_t(x - part_.x0),
-            rendered.sums[i]);
-      });
+      for_each_pixel(tile, part_,
+                     [&](int x, int y, std::size_t i) { use(pixel_number(part_, x, y), rendered.sums[i]); });
     });
   }
 
@@ -182,7 +197,7 @@ double relative_noise(const DirectState& state) {
 
 DirectResult render_direct(const PrecomputeInput& input, DirectState& state,
                            const std::function<void(const DirectState&)>& after_pass) {
-  const DirectRenderer renderer(input);
+  const DirectRenderer renderer(input, tiles_of(input.scene.film));
   const Settings& settings = input.scene.settings;
   state.sums.resize(renderer.pixels() * DirectState::kSums);
   const std::size_t passes = most_passes(settings, input.scene.film);
@@ -214,6 +229,32 @@ DirectResult render_direct(const PrecomputeInput& input, DirectState& state,
   result.entry_samples = state.passes * entry_samples_per_pass(input.scene.film);
   result.relative_error = relative_noise(state);
   return result;
+}
+
+void add_direct_passes(const PrecomputeInput& input, const ImagePart& part, DirectState& state,
+                       const std::function<void(const DirectState&)>& after_pass) {
+  const DirectRenderer renderer(input, tiles_of_part(input.scene.film, part));
+  state.sums.resize(renderer.pixels() * DirectState::kSums);
+  const std::size_t passes = most_passes(input.scene.settings, input.scene.film);
+  if (input.monitor != nullptr)
+    input.monitor->begin("shading", (passes - std::min(passes, state.passes)) * renderer.work_per_pass());
+  while (state.passes < passes) {
+    renderer.add_pass(state);
+    if (after_pass) after_pass(state);
+  }
+}
+
+std::size_t direct_tiles(const Film& film) {
+  return tiles_of(film).size();
+}
+
+std::vector<std::size_t> pixels_of_part(const Film& film, const ImagePart& part) {
+  const Rectangle whole = rendered_part(film);
+  std::vector<std::size_t> pixels;
+  for (const Rectangle& tile : tiles_of_part(film, part))
+    for_each_pixel(tile, whole,
+                   [&](int x, int y, std::size_t) { pixels.push_back(pixel_number(whole, x, y)); });
+  return pixels;
 }
 
 }  // namespace opaline

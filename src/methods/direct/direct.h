@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bodies/body.h"
+#include "core/image_part.h"
 #include "render/render.h"
 
 namespace opaline {
@@ -38,6 +39,15 @@ std::size_t entry_samples_per_pass(const Film& film);
 /// in    after_pass: called between passes
 DirectResult render_direct(const PrecomputeInput& input, DirectState& state,
                            const std::function<void(const DirectState&)>& after_pass = {});
+
+/// Continues the sums of one part of the tiles until Settings::entry_samples, without an image; the others stay 0.
+/// Each pixel has the bits of render_direct.
+/// in    as render_direct; part: count at most that of the tiles
+void add_direct_passes(const PrecomputeInput& input, const ImagePart& part, DirectState& state,
+                       const std::function<void(const DirectState&)>& after_pass = {});
+/// Tiles of an image, and pixels of a part, as numbers in DirectState::sums.
+std::size_t direct_tiles(const Film& film);
+std::vector<std::size_t> pixels_of_part(const Film& film, const ImagePart& part);
 
 /// Mean of a pixel's passes and its variance; pixel: index into DirectState::sums.
 struct DirectEstimate {

@@ -71,6 +71,15 @@ VolumeSums known_sums(VolumeState& state, const WalkStore& store, std::span<cons
   return sums;
 }
 
+void walk_share(const VolumeInput& walks, std::span<const StageKey> keys, const WalkShare& share) {
+  walk_passes(
+      walks, share.first, share.last,
+      [&](const WalkPass& pass) { return share.is_known(keys[pass.source], pass.channel, pass.pass); },
+      [&](const WalkPass& pass, PassSums sums) {
+        share.keep(keys[pass.source], pass.channel, pass.pass, std::move(sums));
+      });
+}
+
 /// Fit of the cells at the boundary of the solid.
 std::shared_ptr<const CellFit> fit_of(BodyStages& stages, const VolumeExitance& exitance,
                                       ReusedWeights& weights) {
@@ -113,6 +122,7 @@ void VolumeMethod::prepare(BodyStages& stages) const {
     if (stages.walks.keep) stages.walks.keep(keys, now);
   };
   keep(state.walks);
+  if (stages.walks.share) return walk_share(walks, keys, *stages.walks.share);
   walk_volume(walks, state.walks, keep);
   const std::size_t passes = passes_of(state.walks);
   stages.store.work().walk_passes += passes - before;
