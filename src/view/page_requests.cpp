@@ -46,12 +46,26 @@ void ViewServer::State::receive(PageConnection& page, std::string_view text) {
   }
 }
 
-void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
-  const std::uint32_t before = edits.revision();
+/// Messages with an effect on the edits alone.
+void ViewServer::State::change_scene(const PageMessage& message) {
   if (const auto* set = std::get_if<SetValues>(&message)) edits.set(*set);
   if (std::holds_alternative<Undo>(message)) edits.undo();
   if (std::holds_alternative<Redo>(message)) edits.redo();
   if (std::holds_alternative<Reset>(message)) edits.reset();
+  if (const auto* recall = std::get_if<Recall>(&message)) edits.recall(recall->edits);
+  if (const auto* frame = std::get_if<GoToFrame>(&message)) edits.go_to_frame(frame->frame);
+  if (const auto* look = std::get_if<LookFrom>(&message)) edits.look(*look);
+  if (std::holds_alternative<LookBack>(message)) edits.look_back();
+  if (std::holds_alternative<KeepLook>(message)) edits.keep_look();
+  if (std::holds_alternative<KeyLook>(message)) edits.key_look();
+  if (const auto* lights = std::get_if<ChangeLights>(&message)) edits.change_lights(*lights);
+  if (const auto* names = std::get_if<RenameMedium>(&message)) edits.rename_medium(*names);
+  if (const auto* floor = std::get_if<SetFloor>(&message)) set_floor(floor->is_on);
+}
+
+void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
+  const std::uint32_t before = edits.revision();
+  change_scene(message);
   if (const auto* restore = std::get_if<Restore>(&message))
     if (const std::string lost = edits.restore(restore->edits); !lost.empty())
       page.answer(told_text(false, "not restored, as the view cannot change files: " + lost));
@@ -69,11 +83,6 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
     background->ask(asked);
     page.answer(told_text(true, fmt::format("choosing settings for {:.3g} %", 100 * choice->error)));
   }
-  if (const auto* frame = std::get_if<GoToFrame>(&message)) edits.go_to_frame(frame->frame);
-  if (const auto* look = std::get_if<LookFrom>(&message)) edits.look(*look);
-  if (std::holds_alternative<LookBack>(message)) edits.look_back();
-  if (std::holds_alternative<KeepLook>(message)) edits.keep_look();
-  if (const auto* lights = std::get_if<ChangeLights>(&message)) edits.change_lights(*lights);
   if (const auto* place = std::get_if<Pick>(&message)) pick(page, *place);
   if (const auto* shown = std::get_if<FrameShown>(&message)) page.shown(shown->frame);
   if (edits.revision() != before) after_edit();
@@ -123,10 +132,12 @@ void ViewServer::State::open(PageConnection& page, const OpenFiles& files) {
   try {
     if (are_files_outside_assets_allowed())
       throw bad_file(path, "is not opened", "a view without --allow-outside: pages would read any file");
-    if (is_environment_name(path))
+    if (is_environment_name(path)) {
       edits.light_by(path);
-    else
+    } else {
       edits.open(path);
+      boxes.clear();
+    }
   } catch (const std::exception&) {
     dropped.discard(path);
     throw;
@@ -158,6 +169,18 @@ void ViewServer::State::pick(PageConnection& page, const Pick& place) {
   picking = &page;
   renderer->pick(part.x0 + place.x, part.y0 + place.y);
   if (renderer->can_interrupt()) renderer->show(edits.scene(), edits.revision(), edits.reference());
+}
+
+void ViewServer::State::set_floor(bool is_on) {
+  if (!is_on) return edits.remove_floor();
+  Bounds all;
+  for (const Bounds& box : boxes) {
+    all.low = component_min(all.low, box.low);
+    all.high = component_max(all.high, box.high);
+  }
+  if (boxes.size() != edits.scene().shapes.size() || boxes.empty())
+    throw bad_file(edits.file(), "a floor cannot be added yet", "the first image of the shapes");
+  edits.add_floor(all.low, all.high);
 }
 
 /// Note on written files differing from the view.

@@ -15,9 +15,12 @@ constexpr std::chrono::milliseconds kTick{100};
 }  // namespace
 
 ViewEvents ViewServer::State::renderer_events() {
-  return {[this](std::uint32_t revision, const Scene& scene, const Plan& plan) {
-            boost::asio::post(
-                io, [this, text = plan_text(revision, scene, plan)] { tell(PageText::plan, text); });
+  return {[this](std::uint32_t revision, const Scene& scene, const Plan& plan, std::span<const Bounds> all) {
+            boost::asio::post(io, [this, text = plan_text(revision, scene, plan, all),
+                                   news = std::vector<Bounds>(all.begin(), all.end())] {
+              boxes = news;
+              tell(PageText::plan, text);
+            });
           },
           [this](std::shared_ptr<const ViewPicture> news) {
             boost::asio::post(io, [this, news = std::move(news)] {

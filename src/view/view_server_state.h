@@ -29,12 +29,14 @@ struct ViewServer::State {
   PageConnection::Events page_events();
   void greet(PageConnection& page);
   void receive(PageConnection& page, std::string_view text);
+  void change_scene(const PageMessage& message);
   void act(PageConnection& page, const PageMessage& message);
   void after_edit(bool has_new_files = false);
   std::string by_scene_camera() const;
   void open(PageConnection& page, const OpenFiles& dropped);
   void reload(const std::set<std::string>& files);
   void pick(PageConnection& page, const Pick& place);
+  void set_floor(bool is_on);
   void save(PageConnection& page, const std::string& name);
   void render_file(PageConnection& page, const std::string& name);
   PackedFrame pack(const std::shared_ptr<const ViewPicture>& picture, const std::string& layer);
@@ -70,6 +72,7 @@ struct ViewServer::State {
   std::unique_ptr<ViewBackground> background;
   BackgroundWork asked;  ///< requested background work
   PageConnection* picking = nullptr;
+  std::vector<Bounds> boxes;            ///< bounds of the shapes, as last loaded, mm
   std::set<std::string> changed_files;  ///< since the scene was read
   FileWatch watch{io, [this](const std::set<std::string>& files) { reload(files); }};
 };
