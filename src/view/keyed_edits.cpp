@@ -27,9 +27,10 @@ Assignment SceneEdits::with_key(const Assignment& change) const {
   const Json* const value = value_at(scene, change.path);
   if (value == nullptr || key_frames(*value).empty()) return change;
   if (is_keyed(*value)) return {change.path + ".keyed." + std::to_string(frame_), change.value};
-  if (now.is_discarded()) return change;
   const Json seen = Json::parse(json());
-  return {change.path, with_keys(*value, *value_at(seen, change.path), now, frame_).dump()};
+  const Json* const shown = value_at(seen, change.path);
+  if (shown == nullptr || now.is_discarded()) return change;
+  return {change.path, with_keys(*value, *shown, now, frame_).dump()};
 }
 
 void SceneEdits::keep_look() {

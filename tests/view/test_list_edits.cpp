@@ -14,11 +14,13 @@ SetValues set_of(const std::string& path, const std::string& value, std::uint64_
   return {{{path, value}}, stroke};
 }
 
+using Replacements = std::vector<std::pair<std::string, std::string>>;
+
 /// The scene of ViewFolder with replaced parts of its text.
 struct ChangedFolder : ViewFolder {
   std::string text = bytes_of(scene);
 
-  explicit ChangedFolder(const std::vector<std::pair<std::string, std::string>>& changes = {}) {
+  explicit ChangedFolder(const Replacements& changes) {
     for (const auto& [old, now] : changes) {
       EXPECT_NE(text.find(old), std::string::npos) << old;
       text.replace(text.find(old), old.size(), now);
@@ -59,7 +61,7 @@ TEST(ListEdits, SnapshotsAreRecalled) {
 // name in the old one's place, comments included; undo gives the old one back. Fails if a layer keeps the old name, or if the
 // text of the media is written anew.
 TEST(ListEdits, MediaAreRenamed) {
-  const ChangedFolder folder({{R"("media": {"stone": {"preset": "marble"}},)", R"("media": {
+  const ChangedFolder folder(Replacements{{R"("media": {"stone": {"preset": "marble"}},)", R"("media": {
     "stone": {"preset": "marble", "specular_ior": {"keyed": {"1": 1.3, "5": 1.7}}},  // from the quarry
     "glazed": {"layers": [{"medium": "skin", "thickness": 1}, {"medium": "stone"}]}, /* twice */
     "skin": {"preset": "skin1"}
@@ -150,7 +152,8 @@ TEST(ListEdits, FloorsComeAndGo) {
 // Claim: an edit of a list keeps the keys inside it: parts that it leaves alone, and keys at other frames of the part that
 // it changes; the steps added behind are there at all frames. Fails if moving a shape of a shot writes one frame's values.
 TEST(ListEdits, KeysInListsStay) {
-  const ChangedFolder folder({{R"([{"translate": [15, 10, 0]}])", R"([{"scale": {"keyed": {"1": 1, "5": 2}}},
+  const ChangedFolder folder(
+      Replacements{{R"([{"translate": [15, 10, 0]}])", R"([{"scale": {"keyed": {"1": 1, "5": 2}}},
     {"translate": {"keyed": {"1": [15, 10, 0], "5": [25, 10, 0]}}}])"}});
   SceneEdits edits(folder.scene, {});
   const auto at = [&](int frame) {
@@ -178,7 +181,7 @@ TEST(ListEdits, KeysInListsStay) {
 // Claim: a key of the camera at a frame leaves the views at all other keys as they are, also where only its position was
 // keyed. Fails if the point of interest changes at all frames.
 TEST(ListEdits, TheCameraGetsAKey) {
-  const ChangedFolder folder({kMovingCamera});
+  const ChangedFolder folder(Replacements{kMovingCamera});
   SceneEdits edits(folder.scene, {});
   const auto camera = [&](int frame) {
     return parse_scene(edits.file_text(), folder.scene, {}, frame).camera;

@@ -148,7 +148,7 @@ export class Knobs {
   placementRows(i) {
     const path = `${this.pathOf("shapes", i)}.transform`, now = (scene) => placementOf(scene.shapes[i].transform);
     const row = (section, key, change, value, changed) => {
-      const knob = this.knob(section, key, `${path}.${key}`, (s) => value(now(s)), {row: {type: "triple", unit: "", default: "", ...change},
+      const knob = this.knob(section, key, `${path}.${change.key ?? key}`, (s) => value(now(s)), {row: {type: "triple", unit: "", default: "", ...change},
         set: (numbers, stroke) => this.set({[path]: stepsOf(changed(now(this.scene), numbers))}, stroke)});
       this.knobs[this.knobs.length - 1].path = path;
       return knob;
