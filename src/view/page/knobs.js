@@ -124,7 +124,7 @@ export class Knobs {
 
   floorRow() {
     const input = make("input", {type: "checkbox", ariaLabel: "floor", onchange: () => this.step({do: "floor", on: input.checked})});
-    const root = make("label", {className: "knob", title: "a diffuse floor just below all shapes"}, make("span", {className: "name", textContent: "floor"}), input);
+    const root = make("label", {className: "knob", title: "a diffuse floor just below all shapes"}, make("span", {className: "name", textContent: "floor"}), make("span", {className: "inputs"}, input));
     this.knobs.push({path: "floor", root, value: (s) => s.floor, show: (isOn) => { input.checked = Boolean(isOn); }});
     return root;
   }
