@@ -7,7 +7,7 @@ import {movedBy, ownAxes, placementOf, scaledBy, stepsOf, turnedBy} from "./plac
 const kReach = .16;              // length of the axes, as a fraction of the image height
 const kStep = .02, kKeyTurn = 5, kKeyScale = 1.05;  // a key: fraction of the camera's distance, degrees, factor
 const kEdgeOn = .3;              // cosine to the line of sight of a ring dragged along itself
-const kFaceOn = .8;              // of a whole ring
+const kFaceOn = .8;              // cosine to the line of sight of a ring drawn as a whole
 const kSmallest = .01;           // factor of a scale
 const kRing = 48;
 const kAxes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], kNames = ["x", "y", "z", "all"];
