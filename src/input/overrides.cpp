@@ -127,6 +127,8 @@ class Override {
   /// Child of `parent` at this step of the path, created if missing.
   Node& step(Node& parent, std::string_view name, std::string_view so_far) const {
     if (name == "texture" && is_plain_value(parent)) make_object(parent);
+    if (name == "+" && parent.override_index == index_ && parent.children.empty())
+      parent.kind = Node::Kind::array;  // there was none
     if (parent.kind == Node::Kind::array) return element(parent, name, so_far);
     if (parent.kind != Node::Kind::object)
       fail("'" + printable(so_far) + "' is a single value, there is no '" + printable(name) + "' in it",
@@ -156,6 +158,12 @@ class Override {
   }
 
   Node& element(Node& list, std::string_view name, std::string_view so_far) const {
+    if (name == "+") {
+      Node& added = list.children.emplace_back();
+      added.kind = Node::Kind::object;
+      added.override_index = index_;
+      return added;
+    }
     std::size_t i = 0;
     const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), i);
     if (error == std::errc{} && end == name.data() + name.size() && i < list.children.size())

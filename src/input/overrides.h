@@ -11,8 +11,8 @@
 
 namespace opaline {
 
-/// Applies document.overrides in order to document.root, an object. Creates missing keys; a value other than
-/// JSON is a string; a key replaces its old spelling.
+/// Applies document.overrides in order to document.root, an object. Creates missing keys; "+" appends to a list; a value
+/// other than JSON is a string; a key replaces its old spelling.
 /// error Error{bad_input} naming the override: no '=', a path through a single value, no such list element, a
 ///       probably misspelt medium
 void apply_overrides(Document& document);

@@ -140,6 +140,16 @@ const std::vector<Kind>& kinds() {
          return Pick{r.index("x"), r.index("y")};
        }},
       {"keep_look", {"do"}, [](Reader) -> PageMessage { return KeepLook{}; }},
+      {"key_look", {"do"}, [](Reader) -> PageMessage { return KeyLook{}; }},
+      {"recall",
+       {"do", "edits"},
+       [](Reader r) -> PageMessage { return Recall{r.texts("edits", "path=value")}; }},
+      {"rename_medium",
+       {"do", "name", "to"},
+       [](Reader r) -> PageMessage {
+         return RenameMedium{r.text("name"), r.text("to")};
+       }},
+      {"floor", {"do", "on"}, [](Reader r) -> PageMessage { return SetFloor{r.flag("on")}; }},
   };
   return table;
 }

@@ -27,6 +27,10 @@ struct Reset {};
 struct Restore {
   std::vector<std::string> edits;
 };
+/// Edits replacing all others, as in `--set`.
+struct Recall {
+  std::vector<std::string> edits;
+};
 /// Opens uploaded files (dropped_files.h).
 struct OpenFiles {
   std::string drop;
@@ -67,27 +71,39 @@ struct LookFrom {
 struct LookBack {};
 /// Makes the free camera the scene's.
 struct KeepLook {};
+/// Makes the free camera a key of the scene's at the current frame.
+struct KeyLook {};
 /// Adds a light, copies or removes one.
 struct ChangeLights {
   enum class Change { add, copy, remove };
   Change change = Change::add;
   int index = 0;  ///< unused to add
 };
+struct RenameMedium {
+  std::string name, to;
+};
+/// Adds a floor below all shapes, or removes it.
+struct SetFloor {
+  bool is_on = false;
+};
 /// Asks for the shape at a pixel of the shown image.
 struct Pick {
   int x = 0, y = 0;
 };
 
-using PageMessage = std::variant<SetValues, Undo, Redo, Reset, Restore, OpenFiles, SaveScene, RenderFile,
-                                 ChooseLayer, WorkBehind, ChooseSettings, FrameShown, GoToFrame, LookFrom,
-                                 LookBack, KeepLook, ChangeLights, Pick>;
+using PageMessage =
+    std::variant<SetValues, Undo, Redo, Reset, Restore, OpenFiles, SaveScene, RenderFile, ChooseLayer,
+                 WorkBehind, ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook,
+                 ChangeLights, Pick, Recall, KeyLook, RenameMedium, SetFloor>;
 
 /// in    text: {"do": "set", "values": {"media.marble.specular_ior": 1.4}, "stroke": 7}, {"do": "undo"},
 ///       {"do": "redo"}, {"do": "reset"}, {"do": "restore", "edits": ["media.marble.specular_ior=1.4"]},
 ///       {"do": "open", "drop": "7", "names": ["a.obj", "a.mtl"]}, {"do": "save", "name": "a.json"}, {"do": "render", "name": "a.exr"}, {"do": "layer", "name": "N"},
 ///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01}, {"do":
 ///       "frame", "frame": 7}, {"do": "shown", "frame": 3}, {"do": "look", "position": [0, 0, 5], "look_at":
-///       [0, 0, 0]}, {"do": "look_back"}, {"do": "keep_look"}, {"do": "lights", "change": "copy", "index": 1} or {"do": "pick", "x": 7, "y": 3}
+///       [0, 0, 0]}, {"do": "look_back"}, {"do": "keep_look"}, {"do": "key_look"}, {"do": "lights", "change": "copy", "index": 1},
+///       {"do": "recall", "edits": ["film.exposure=1"]}, {"do": "rename_medium", "name": "stone", "to": "gneiss"},
+///       {"do": "floor", "on": true} or {"do": "pick", "x": 7, "y": 3}
 /// error Error{bad_input}: no such message, within the limits of json_tree.h
 PageMessage parse_page_message(std::string_view text);
 

@@ -2,11 +2,9 @@
 #include "view/scene_edits.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <numeric>
-#include <sstream>
+#include <set>
 #include <utility>
 
 #include "core/log.h"
@@ -14,31 +12,14 @@
 #include "input/overrides.h"
 #include "input/schema.h"
 #include "opaline/error.h"
+#include "view/edit_paths.h"
+#include "view/keyed_values.h"
 
 namespace opaline {
 namespace {
 
 constexpr std::size_t kMostSteps = 1000;
 constexpr int kMostKeyedFrames = 100000;
-
-/// First and last key of all keyed values of a parsed scene; {0, -1} if there are none.
-std::pair<int, int> key_range(const Json& value) {
-  std::pair<int, int> range{0, -1};
-  const auto add = [&](int first, int last) {
-    if (first > last) return;
-    range = range.second < range.first
-                ? std::pair{first, last}
-                : std::pair{std::min(range.first, first), std::max(range.second, last)};
-  };
-  if (value.is_object() && value.contains("keyed"))
-    for (const auto& [frame, at] : value.at("keyed").items()) add(std::stoi(frame), std::stoi(frame));
-  else if (value.is_structured())
-    for (const Json& child : value) {
-      const auto [first, last] = key_range(child);
-      add(first, last);
-    }
-  return range;
-}
 
 std::vector<std::string> mesh_files(const Scene& scene) {
   std::vector<std::string> files;
@@ -58,67 +39,9 @@ void check_pixels(const Scene& scene) {
         std::to_string(pixels));
 }
 
-bool is_keyed(const Json& value) {
-  return value.is_object() && value.contains("keyed");
-}
-
-/// A member, or an element by its index or name; null: there is none.
-const Json* child_of(const Json& owner, const std::string& name) {
-  if (owner.is_object()) return owner.contains(name) ? &owner.at(name) : nullptr;
-  if (!owner.is_array()) return nullptr;
-  for (std::size_t i = 0; i < owner.size(); ++i) {
-    const Json& element = owner.at(i);
-    if (name == std::to_string(i) || (element.is_object() && element.value("name", "") == name))
-      return &element;
-  }
-  return nullptr;
-}
-
-/// At a path as in `--set`; null: missing.
-const Json* value_at(const Json& scene, const std::string& path) {
-  const Json* value = &scene;
-  std::istringstream names(path);
-  for (std::string name; value != nullptr && std::getline(names, name, '.');) value = child_of(*value, name);
-  return value;
-}
-
 /// True if a value of this path places the scene's camera.
 bool moves_camera(const std::string& path) {
   return path == "camera" || path.starts_with("camera.position") || path.starts_with("camera.look_at");
-}
-
-/// True if an override is of the path, or of a value inside it.
-bool is_within(const std::string& override, const std::string& path) {
-  return override.starts_with(path) && (override.at(path.size()) == '=' || override.at(path.size()) == '.');
-}
-
-/// A name of no light; numbered if necessary.
-std::string unused_name(const Json& lights, const std::string& name) {
-  const auto is_used = [&](const std::string& tried) {
-    return std::any_of(lights.begin(), lights.end() - 1,
-                       [&](const Json& light) { return light.value("name", "") == tried; });
-  };
-  std::string unused = name;
-  for (int number = 2; is_used(unused); ++number) unused = name + "-" + std::to_string(number);
-  return unused;
-}
-
-/// A sphere to the upper left of the camera, as far from its point of interest as the camera. There, the irradiance is
-/// about 3.
-Json new_light(const Scene& scene) {
-  constexpr double kIrradiance = 3, kAngle = .1;  // kAngle: radius over distance
-  const Camera& camera = scene.camera;
-  const Vec3d back = camera.position - camera.look_at, right = normalized(cross(camera.up, back));
-  const double distance = length(back);
-  const Vec3d up = cross(normalized(back), right), towards = normalized(back / distance + up - right);
-  const Vec3d center = (camera.look_at + towards * distance) / scene.mm_per_unit;
-  const double radiance = kIrradiance / (std::numbers::pi * kAngle * kAngle);
-  return {{"name", "light"},
-          {"type", "sphere"},
-          {"center", {center.x, center.y, center.z}},
-          {"radius", kAngle * distance / scene.mm_per_unit},
-          {"radiance", std::round(radiance)},
-          {"visible", false}};
 }
 
 /// Removes edits of a shape's opaque surface, replaced by a medium, and vice versa.
@@ -145,7 +68,9 @@ SceneEdits::SceneEdits(const std::string& file, std::vector<std::string> given, 
   if (!frames_.empty()) frame_ = frames_.front();
   scene_ = read({}, {}, frame_);
   if (!frames_.empty()) return;
-  const auto [first, last] = key_range(Json::parse(merged_scene(text_, file_, all_overrides({}))));
+  const std::set<int> keys = key_frames(Json::parse(merged_scene(text_, file_, all_overrides({}))));
+  if (keys.empty()) return;
+  const int first = *keys.begin(), last = *keys.rbegin();
   if (last <= first || last - first >= kMostKeyedFrames) return;
   frames_.resize(std::size_t(last - first + 1));
   std::iota(frames_.begin(), frames_.end(), first);
@@ -184,15 +109,6 @@ Scene SceneEdits::read(const Edits& edits, const Look& look, int frame) const {
   return parse_scene(text_, file_, all, frame);
 }
 
-/// Changes one key of a keyed value.
-Assignment SceneEdits::with_key(const Assignment& change) const {
-  if (frames_.empty() || is_keyed(Json::parse(change.value, nullptr, false))) return change;
-  const Json scene = Json::parse(merged_scene(text_, file_, all_overrides(edits())));
-  const Json* const value = value_at(scene, change.path);
-  if (value == nullptr || !is_keyed(*value)) return change;
-  return {change.path + ".keyed." + std::to_string(frame_), change.value};
-}
-
 void SceneEdits::set(const SetValues& message) {
   change(message, true);
 }
@@ -204,7 +120,8 @@ void SceneEdits::change(const SetValues& message, bool at_frame) {
   for (const Assignment& given : message.values) {
     if (moves_camera(given.path)) look.reset();
     const Assignment change = at_frame ? with_key(given) : given;
-    std::erase_if(edits, [&](const std::string& text) { return is_within(text, change.path); });
+    if (!change.path.ends_with(".+"))
+      std::erase_if(edits, [&](const std::string& text) { return is_within(text, change.path); });
     drop_replaced_surface(edits, change.path);
     edits.push_back(change.path + '=' + change.value);
   }
@@ -215,13 +132,27 @@ void SceneEdits::change(const SetValues& message, bool at_frame) {
   if (goes_on) {
     history_[at_] = std::move(edits);
   } else {
-    history_.resize(at_ + 1);
-    history_.push_back(std::move(edits));
-    if (history_.size() > kMostSteps) history_.erase(history_.begin());
-    at_ = history_.size() - 1;
+    push(std::move(edits));
   }
   stroke_ = message.stroke;
   scene_ = std::move(scene);
+  ++revision_;
+}
+
+/// Adds a step of undo.
+void SceneEdits::push(Edits edits) {
+  history_.resize(at_ + 1);
+  history_.push_back(std::move(edits));
+  if (history_.size() > kMostSteps) history_.erase(history_.begin());
+  at_ = history_.size() - 1;
+  stroke_ = 0;
+}
+
+/// Replaces all edits, as a step.
+void SceneEdits::replace(Edits all) {
+  if (all == edits()) return;
+  scene_ = parsed(all, look_);
+  push(std::move(all));
   ++revision_;
 }
 
@@ -241,13 +172,7 @@ void SceneEdits::redo() {
 }
 
 void SceneEdits::reset() {
-  if (edits().empty()) return;
-  scene_ = parsed({}, look_);
-  history_.resize(at_ + 1);
-  history_.emplace_back();
-  ++at_;
-  stroke_ = 0;
-  ++revision_;
+  replace({});
 }
 
 std::string SceneEdits::restore(const std::vector<std::string>& edits) {
@@ -259,10 +184,8 @@ std::string SceneEdits::restore(const std::vector<std::string>& edits) {
       kept.push_back(edit);
     else if (lost.empty())
       lost = edit;
-  Scene scene = parsed(kept, look_);
-  history_.push_back(std::move(kept));
-  ++at_;
-  scene_ = std::move(scene);
+  scene_ = parsed(kept, look_);
+  push(std::move(kept));
   ++revision_;
   return lost;
 }
@@ -315,27 +238,6 @@ void SceneEdits::light_by(const std::string& picture) {
   change(values, false);
 }
 
-void SceneEdits::change_lights(const ChangeLights& wanted) {
-  Json lights =
-      Json::parse(merged_scene(text_, file_, all_overrides(edits()))).value("lights", Json::array());
-  const auto index = std::size_t(wanted.index);
-  if (wanted.change == ChangeLights::Change::add) {
-    lights.push_back(new_light(scene_));
-  } else if (index >= lights.size()) {
-    throw bad_file(file_, "there is no light " + std::to_string(index),
-                   std::to_string(lights.size()) + " lights");
-  } else if (wanted.change == ChangeLights::Change::copy) {
-    lights.push_back(lights.at(index));
-  } else {
-    lights.erase(lights.begin() + wanted.index);
-  }
-  if (wanted.change != ChangeLights::Change::remove)
-    lights.back()["name"] = unused_name(lights, lights.back().value("name", "light"));
-  const std::string value = lights.dump();
-  with_files_.push_back("lights=" + value);
-  set({{{"lights", value}}, 0});
-}
-
 void SceneEdits::go_to_frame(int frame) {
   if (std::ranges::find(frames_, frame) == frames_.end())
     throw bad_file(file_, "frame " + std::to_string(frame) + " is not shown",
@@ -360,17 +262,6 @@ void SceneEdits::look_back() {
   scene_ = parsed(edits(), {});
   look_.reset();
   ++revision_;
-}
-
-void SceneEdits::keep_look() {
-  if (!look_) return;
-  const Json camera = Json::parse(json()).value("camera", Json::object());
-  SetValues changes;
-  for (const auto& [key, value] : {std::pair{"position", look_->position}, {"look_at", look_->look_at}})
-    if (!camera.contains(key) || camera.at(key) != Json::parse(value))
-      changes.values.push_back({"camera." + std::string(key), value});
-  if (changes.values.empty()) return look_back();
-  set(changes);
 }
 
 std::optional<int> SceneEdits::frame() const {
@@ -403,6 +294,11 @@ std::vector<std::string> SceneEdits::overrides() const {
 
 std::string SceneEdits::json() const {
   return merged_scene(text_, file_, all_overrides(edits()), frame_);
+}
+
+/// JSON with all keys.
+std::string SceneEdits::whole() const {
+  return merged_scene(text_, file_, all_overrides(edits()));
 }
 
 std::string SceneEdits::file_text() const {

@@ -35,6 +35,10 @@ class SceneEdits {
   /// No effect after an edit of the scene. Returns the first edit left out because it names a file, if any.
   std::string restore(const std::vector<std::string>& edits);
 
+  /// Other edits, as one step.
+  /// error Error{bad_input}: an edit names a file, and was not made here
+  void recall(const std::vector<std::string>& edits) { replace(edits); }
+
   /// Opens another file without edits; command-line overrides of film and settings stay.
   /// error as the constructor
   void open(const std::string& file);
@@ -51,6 +55,17 @@ class SceneEdits {
   /// error Error{bad_input}: no light of this index
   void change_lights(const ChangeLights& wanted);
 
+  /// An edit of the media, and of all references to the one with the name.
+  /// error Error{bad_input}: no such medium; an invalid name, or one of another medium
+  void rename_medium(const RenameMedium& wanted);
+
+  // An edit: a diffuse square just below everything; and its removal, with the edits of it.
+  /// in    low, high: bounds of the scene, mm
+  void add_floor(const Vec3d& low, const Vec3d& high);
+  void remove_floor();
+  /// True while there is a floor made by add_floor.
+  bool has_floor() const;
+
   /// Shows another frame; not a step of undo.
   /// error as parse_scene; Error{bad_input}: none of frames()
   void go_to_frame(int frame);
@@ -61,6 +76,9 @@ class SceneEdits {
   void look_back();
   /// An edit of the scene's camera, as `set` makes it.
   void keep_look();
+  /// An edit of the scene's camera at the current frame alone: its position and point of interest become keyed if one is,
+  /// and the views at all other keys stay. No effect in a scene without frames.
+  void key_look();
 
   /// Empty: a scene without frames, shown at frame 1.
   const std::vector<int>& frames() const { return frames_; }
@@ -95,7 +113,10 @@ class SceneEdits {
   Edits all_overrides(const Edits& edits) const;
   bool opens_file(const std::string& edit) const;
   Assignment with_key(const Assignment& change) const;
+  std::string whole() const;
   void go_to(std::size_t place);
+  void push(Edits edits);
+  void replace(Edits all);
   void change(const SetValues& message, bool at_frame);
 
   std::string file_, text_;

@@ -95,17 +95,25 @@ std::string scene_text(const SceneEdits& edits, const std::string& command) {
                   {"edits", edits.edits()},
                   {"undo", edits.can_undo()},
                   {"redo", edits.can_redo()},
+                  {"floor", edits.has_floor()},
                   {"command", command},
                   {"frames", edits.frames()},
                   {"frame", edits.frame().value_or(1)}});
 }
 
-std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan) {
-  Json groups = Json::array();
+std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan,
+                      std::span<const Bounds> boxes) {
+  Json groups = Json::array(), bounds = Json::array();
+  const auto point = [&](const Vec3d& mm) {
+    const Vec3d p = mm / scene.mm_per_unit;
+    return Json{p.x, p.y, p.z};
+  };
+  for (const Bounds& box : boxes) bounds.push_back({point(box.low), point(box.high)});
   for (const BodyPlan& group : plan.groups) groups.push_back(group_json(scene, group));
   return compact({{"is", "plan"},
                   {"revision", revision},
                   {"groups", groups},
+                  {"boxes", bounds},
                   {"stages", plan.stages},
                   {"warnings", plan.warnings},
                   {"model_error", expected_model_error(plan).value_or(0)},

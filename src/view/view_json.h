@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "opaline/monitor.h"
@@ -19,8 +20,10 @@ std::string schema_text();
 /// command: renders the same from the scene's camera
 std::string scene_text(const SceneEdits& edits, const std::string& command);
 
-/// "plan": requirements of the scene, in words.
-std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan);
+/// "plan": requirements of the scene, in words, and the bounds of its shapes in scene units.
+/// in    boxes: one per shape, mm
+std::string plan_text(std::uint32_t revision, const Scene& scene, const Plan& plan,
+                      std::span<const Bounds> boxes);
 
 /// "report": on a final image.
 std::string report_text(const ViewReport& report);

@@ -197,7 +197,7 @@ void ViewRenderer::draw(const Wanted& wanted) {
   }
   prepared_.reset();
   session_->edit(wanted.scene);
-  events_.planned(wanted.revision, session_->scene(), session_->plan());
+  events_.planned(wanted.revision, session_->scene(), session_->plan(), session_->world().boxes);
   check_memory(session_->plan());
   Spent& spent = spent_[change];
   const bool is_direct = wanted.scene.settings.method == Method::direct;

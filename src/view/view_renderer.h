@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -46,7 +47,10 @@ struct ViewReport {
 
 /// Called on the renderer's thread.
 struct ViewEvents {
-  std::function<void(std::uint32_t revision, const Scene& scene, const Plan& plan)> planned;
+  /// boxes: of the shapes, mm
+  std::function<void(std::uint32_t revision, const Scene& scene, const Plan& plan,
+                     std::span<const Bounds> boxes)>
+      planned;
   std::function<void(std::shared_ptr<const ViewPicture> picture)> picture;
   std::function<void(const ViewReport& report)> report;
   std::function<void(std::uint32_t revision, const std::string& why)> failed;

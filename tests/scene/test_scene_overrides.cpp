@@ -53,6 +53,21 @@ TEST(SceneOverrides, AllElements) {
   }
 }
 
+// Claim: + in a path appends an element, to a missing list, too, and later overrides name it as any other. Source:
+// scenes/README.md. Fails if the element replaces the last one, or if the list is an object with the key "+".
+TEST(SceneOverrides, Append) {
+  const Scene scene =
+      parse(base, {R"(shapes.+={"name": "ball", "sphere": {"radius": 2}})", "shapes.ball.medium=skin",
+                   R"(shapes.+={"sphere": {"radius": 3}})", "shapes.shape3.normals=faceted"});
+  ASSERT_EQ(scene.shapes.size(), 4u);
+  EXPECT_EQ(scene.shapes[2].name, "ball");
+  EXPECT_EQ(scene.shapes[2].medium, 1u);
+  EXPECT_EQ(scene.shapes[3].normals, NormalMode::faceted);
+  const std::string light = R"(lights.+={"type": "point", "position": [0, 0, 0], "intensity": 1})";
+  EXPECT_EQ(parse("{}", {light, light}).lights.size(), 2u);
+  EXPECT_THROW(parse(base, {"film.+=1"}), Error);
+}
+
 // Claim: a number without the zero before its point is one; words and nothing are none. Fails if: JSON's own rule decides,
 // or a zero is put before everything.
 TEST(SceneOverrides, NumbersBeginWithAPoint) {

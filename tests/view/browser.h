@@ -99,9 +99,11 @@ class Browser {
       mouse(tab, "mouseMoved", x + dx * i / 8, y + dy * i / 8, Json::object(), modifiers);
     mouse(tab, "mouseReleased", x + dx, y + dy, Json::object(), modifiers);
   }
-  void key(const Tab& tab, const std::string& key, int modifiers = 0) {
+  /// code: of the key on the keyboard, as "Digit1"
+  void key(const Tab& tab, const std::string& key, int modifiers = 0, const std::string& code = "") {
     for (const char* kind : {"rawKeyDown", "keyUp"})
-      call(tab, "Input.dispatchKeyEvent", {{"type", kind}, {"key", key}, {"modifiers", modifiers}});
+      call(tab, "Input.dispatchKeyEvent",
+           {{"type", kind}, {"key", key}, {"modifiers", modifiers}, {"code", code}});
   }
   Json call(const Tab& tab, const std::string& method, const Json& parameters) {
     Json message{

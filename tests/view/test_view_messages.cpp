@@ -107,6 +107,7 @@ class OddMessages {
                                                  "settings",
                                                  "",
                                                  "shapes.left.transform",
+                                                 "shapes.+",
                                                  "shapes.left.sphere.radius",
                                                  "shapes.floor.quad.u",
                                                  "camera.position.keyed.3"};
@@ -119,7 +120,8 @@ class OddMessages {
   }
 
   Json message() {
-    static const std::vector<std::string> kWords{"undo", "redo", "reset", "look_back", "keep_look"};
+    static const std::vector<std::string> kWords{"undo",      "redo",      "reset",
+                                                 "look_back", "keep_look", "key_look"};
     static const std::vector<std::string> kNames{"a.json", "../a.json", "a.exr",  "a.####.png",
                                                  "",       "N",         "diffuse"};
     switch (below(random_, 16)) {
@@ -141,6 +143,12 @@ class OddMessages {
         return {{"do", "restore"}, {"edits", {"media.stone.eta=1.4", value().dump()}}};
       case 7:
         return {{"do", "choose"}, {"error", value()}};
+      case 8:
+        return {{"do", "floor"}, {"on", below(random_, 2) == 0}};
+      case 9:
+        return {{"do", "rename_medium"}, {"name", "stone"}, {"to", one_of(kNames)}};
+      case 10:
+        return {{"do", "recall"}, {"edits", {"media.stone.eta=1.4", value().dump()}}};
       default:
         break;
     }

@@ -68,6 +68,31 @@ export function dolly(camera, factor) {
   return {...camera, position: add(camera.look_at, scale(sub(camera.position, camera.look_at), factor))};
 }
 
+const kMargin = 1.15;  // around framed things
+
+// The camera moved along its line of sight and across it, to show a box: its lowest and highest corner.
+export function framed(camera, aspect, [low, high]) {
+  const {forward, right, up} = basis(camera), middle = scale(add(low, high), .5);
+  const slope = Math.tan(camera.field_of_view * Math.PI / 360);
+  let distance = length(sub(high, low)) * 1e-3, height = distance;
+  for (let corner = 0; corner < 8; ++corner) {
+    const to = sub([0, 1, 2].map((i) => (corner >> i & 1 ? high : low)[i]), middle);
+    const half = Math.max(Math.abs(dot(to, up)), Math.abs(dot(to, right)) / aspect);
+    height = Math.max(height, 2 * half);
+    distance = Math.max(distance, half / slope - dot(to, forward));
+  }
+  const made = {...camera, look_at: middle, position: sub(middle, scale(forward, kMargin * distance))};
+  return camera.orthographic_height ? {...made, orthographic_height: kMargin * height} : made;
+}
+
+// Box around boxes; without flat ones, as floors, if there are others.
+export function boxAround(boxes) {
+  const isFlat = ([low, high]) => Math.min(...sub(high, low)) < 1e-6 * Math.max(...sub(high, low));
+  const solid = boxes.filter((box) => !isFlat(box)), all = solid.length ? solid : boxes;
+  if (!all.length) return null;
+  return [Math.min, Math.max].map((extreme, side) => [0, 1, 2].map((i) => extreme(...all.map((box) => box[side][i]))));
+}
+
 // Height of the image at a depth.
 export const heightAt = (camera, depth) =>
   camera.orthographic_height || 2 * depth * Math.tan(camera.field_of_view * Math.PI / 360);

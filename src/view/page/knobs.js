@@ -2,6 +2,7 @@
 // One knob per scene value, from the server's table of keys.
 import {rounded} from "./camera.js";
 import {newStroke} from "./connection.js";
+import {movedTo, placementOf, scaledTo, stepsOf, turnedTo, turnOf} from "./placement.js";
 
 // Form of a medium's definition, and its keys.
 const kForms = {
@@ -59,7 +60,7 @@ const threeOf = (value) =>
 export class Knobs {
   // set(values, stroke): changes the scene; help(text): shows a line; step(message): asks the server for another change
   constructor(root, set, help, step) {
-    Object.assign(this, {root, set, help, step, knobs: [], shape: ""});
+    Object.assign(this, {root, set, help, step, knobs: [], shape: "", opening: ""});
   }
 
   take(schema) {
@@ -98,7 +99,7 @@ export class Knobs {
     this.knobs = [];
     this.root.replaceChildren();
     const group = (name, title, rows) => {
-      const details = make("details", {open: first ? /^(media|lights)/.test(name) : open.has(name)}, make("summary", {textContent: title}), ...rows);
+      const details = make("details", {open: first ? /^(media|lights)/.test(name) : open.has(name) || name === this.opening}, make("summary", {textContent: title}), ...rows);
       details.dataset.group = name;
       this.root.append(details);
     };
@@ -106,10 +107,10 @@ export class Knobs {
     (scene.lights || []).forEach((light, i) => group(`lights.${i}`, `Light ${light.name || i}`, this.rowsOf(`light.${light.type}`, this.pathOf("lights", i), (s) => s.lights[i], ["type", "name"]).concat(
       this.buttons([["Copy", {do: "lights", change: "copy", index: i}], ["Remove", {do: "lights", change: "remove", index: i}]]))));
     this.root.append(this.buttons([["Add light", {do: "lights", change: "add", index: 0}]]));
-    group("scene", "Scene", ["surroundings", "backdrop", "mm_per_unit"].map((key) => this.knob("scene", key, key, (s) => s[key])));
+    group("scene", "Scene", ["surroundings", "backdrop", "mm_per_unit"].map((key) => this.knob("scene", key, key, (s) => s[key])).concat(this.floorRow()));
     (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`, [...this.materialRow(i),
       ...[...("medium" in shape ? [] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), "normals", "visible"].map((key) =>
-        this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key]))]));
+        this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key])), ...this.placementRows(i)]));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera, unusedOf(scene.camera)));
     group("film", "Image", this.rowsOf("film", "film", (s) => s.film));
     group("settings", "Method", this.rowsOf("settings", "settings", (s) => s.settings, ["laboratory"]));
@@ -119,6 +120,42 @@ export class Knobs {
   buttons(messages) {
     return make("p", {className: "buttons"}, ...messages.map(([textContent, message]) =>
       make("button", {type: "button", textContent, onclick: () => this.step(message)})));
+  }
+
+  floorRow() {
+    const input = make("input", {type: "checkbox", ariaLabel: "floor", onchange: () => this.step({do: "floor", on: input.checked})});
+    const root = make("label", {className: "knob", title: "a diffuse floor just below all shapes"}, make("span", {className: "name", textContent: "floor"}), make("span", {className: "inputs"}, input));
+    this.knobs.push({path: "floor", root, value: (s) => s.floor, show: (isOn) => { input.checked = Boolean(isOn); }});
+    return root;
+  }
+
+  nameRow(name) {
+    const input = make("input", {ariaLabel: `media.${name} name`, spellcheck: false, autocomplete: "off", onchange: () => {
+      shown = null;
+      this.opening = `media.${input.value}`;
+      this.step({do: "rename_medium", name, to: input.value});
+    }});
+    let shown = null;  // a name stays while it is typed
+    const root = make("label", {className: "knob", title: "name of the medium; shapes and layers of it follow"}, make("span", {className: "name", textContent: "name"}), input);
+    this.knobs.push({path: `media.${name}.name`, root, value: () => name, show: () => {
+      if (shown !== name) input.value = name;
+      shown = name;
+    }});
+    return root;
+  }
+
+  // Last steps of the transform, as numbers.
+  placementRows(i) {
+    const path = `${this.pathOf("shapes", i)}.transform`, now = (scene) => placementOf(scene.shapes[i].transform);
+    const row = (section, key, change, value, changed) => {
+      const knob = this.knob(section, key, `${path}.${change.key ?? key}`, (s) => value(now(s)), {row: {type: "triple", unit: "", default: "", ...change},
+        set: (numbers, stroke) => this.set({[path]: stepsOf(changed(now(this.scene), numbers))}, stroke)});
+      this.knobs[this.knobs.length - 1].path = path;
+      return knob;
+    };
+    return [row("shape.transform", "translate", {unit: "scene units"}, ({move}) => move, movedTo),
+      row("shape.transform.rotate", "degrees", {key: "rotate", unit: "degrees", meaning: "rotates about the x axis, then y, then z"}, turnOf, turnedTo),
+      row("shape.transform", "scale", {}, ({scale}) => scale, scaledTo)];
   }
 
   // Opens a group and moves to it.
@@ -165,7 +202,7 @@ export class Knobs {
     const select = make("select", {}, ...Object.entries(kForms).map(([key, {name: text}]) => make("option", {value: key, textContent: text})));
     select.value = form;
     select.onchange = () => this.set({[path]: this.converted(name, select.value)}, newStroke());
-    return [make("label", {className: "knob"}, make("span", {className: "name", textContent: "defined by"}), select),
+    return [this.nameRow(name), make("label", {className: "knob"}, make("span", {className: "name", textContent: "defined by"}), select),
       ...[...kForms[form].keys, "specular_ior", "specular_roughness", "specular_weight", "profile", ...kOptional.filter((key) => key in medium)].map((key) => this.knob("medium", key, `${path}.${key}`, (s) => s.media[name][key]))];
   }
 
@@ -184,14 +221,16 @@ export class Knobs {
     return {...made, ...(medium.profile ? {profile: medium.profile} : {}), ...(medium.fit ? {fit: medium.fit} : {})};
   }
 
-  knob(section, key, path, value) {
-    const row = this.rows.get(`${section}.${key}`);
+  // change: other parts of the row, and a setter of the value
+  knob(section, key, path, value, change = {}) {
+    const row = {...this.rows.get(`${section}.${key}`), ...change.row};
     const knob = {path, row, value: (scene) => value(scene)};
-    const inputs = this.inputs(knob, (now, stroke = newStroke()) => this.set({[path]: now}, stroke));
+    const set = change.set || ((now, stroke) => this.set({[path]: now}, stroke));
+    const inputs = this.inputs(knob, (now, stroke = newStroke()) => set(now, stroke));
     const range = kNumbers.concat(kColours).includes(row.type) && Math.abs(row.range[1]) < 1e29 ? `, ${row.range[0]} to ${row.range[1]}` : "";
     const unit = row.unit || (["length", "point"].includes(row.type) ? "scene units" : "");
-    const help = `${key}: ${plain(row.meaning)}${unit ? ` [${unit}]` : ""}${range}${row.default ? `; default ${plain(row.default)}` : ""}`;
-    knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name"}, ...key.split(/(?<=_)/).flatMap((word) => [word, make("wbr")])), inputs);
+    const help = `${row.key}: ${plain(row.meaning)}${unit ? ` [${unit}]` : ""}${range}${row.default ? `; default ${plain(row.default)}` : ""}`;
+    knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name"}, ...row.key.split(/(?<=_)/).flatMap((word) => [word, make("wbr")])), inputs);
     knob.root.role = "group";
     knob.root.setAttribute("aria-label", `${path}, ${unit}`);
     if (row.unit && row.unit.length < 14) inputs.append(make("span", {className: "unit", textContent: row.unit}));

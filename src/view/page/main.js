@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Connects the server with the image, the knobs and the status lines.
 import {Ahead} from "./ahead.js";
-import {cameraOf, dolly, lookOf, orbit, pan, rounded, turnedLight} from "./camera.js";
-import {Connection, newStroke, pausedStroke} from "./connection.js";
+import {Bookmarks} from "./bookmarks.js";
+import {boxAround, cameraOf, framed, lookOf, rounded} from "./camera.js";
+import {CameraInput} from "./camera_input.js";
+import {Connection, newStroke} from "./connection.js";
 import {Drop} from "./drop.js";
+import {Gizmo} from "./gizmo.js";
 import {Knobs} from "./knobs.js";
 import {Overlay} from "./overlay.js";
 import {draw, parseFrame, valuesAt} from "./picture.js";
+import {Snapshots} from "./snapshots.js";
 import {Trade} from "./trade.js";
 
 const one = (id) => document.getElementById(id);
-const kTurn = 4, kKeyTurn = .1, kKeyPan = .05, kKeyDolly = 1.1;  // radians a height; a key
-const kClick = 4;                                                  // maximum movement of a click, pixels
 const kLooksOpaque = 300;                                          // mean free paths through a body
 
 const film = {aspect: 1, shownHeight: 1, place: (seen) => seen};
-const state = {scene: null, camera: null, film, wipe: 0, revision: 0, edits: [], command: ""};
+const state = {scene: null, camera: null, film, wipe: 0, revision: 0, edits: [], command: "", boxes: [], selected: null};
 const display = {exposure: 0, transform: "soft", channel: ""};
-let frame = null, pinned = null, waiting = null, isDragging = false, layers = [];
+let frame = null, waiting = null, layers = [];
+let pinned = null, beside = null;  // images on the left of the wipe, and on its right instead of the newest one
 let reference = null, waitingReference = null, behind = {trade: false, reference: ""};
 
 // ---- the image ----------------------------------------------------------------------------------------------
@@ -36,7 +39,7 @@ function fit() {
   const stage = one("stage").getBoundingClientRect(), aspect = film.shownAspect || 1;
   const height = Math.max(1, Math.min(stage.height, stage.width / aspect));
   Object.assign(one("frame").style, {width: `${height * aspect}px`, height: `${height}px`});
-  overlay.update();
+  updateOverlay();
 }
 
 // A reference belongs to one scene, and is hidden after an edit.
@@ -44,16 +47,20 @@ const leftPicture = () => pinned || (behind.reference && frame && reference?.rev
 
 function redraw() {
   const left = leftPicture();
-  if (frame) draw(frame, one("picture"), display);
+  if (frame) draw(beside || frame, one("picture"), display);
   if (left) draw(left, one("pinned"), display);
   one("pinned").hidden = !left;
   state.wipe = left ? Number(one("wipe").value) : 0;
   one("pinned").style.clipPath = `inset(0 ${100 - state.wipe}% 0 0)`;
   inspect();
-  overlay.update();
+  updateOverlay();
 }
 
 function showFrame() {
+  if (beside && waiting.revision !== frame.revision) {
+    beside = null;
+    snapshots.forget("right");
+  }
   frame = waiting;
   waiting = null;
   if (frame.step === "final" && state.offersLayers !== frame.revision) offerLayers();
@@ -85,9 +92,10 @@ function offerLayers() {
 }
 
 function inspect() {
-  if (!frame || one("x").value === "" || !film.pixels) return;
-  const [x, y] = ["x", "y"].map((id, i) => Math.floor(Number(one(id).value) * (i ? frame.height : frame.width) / film.pixels[i]));
-  const values = valuesAt(frame, x, y), text = (v) => Number(v.toPrecision(4)).toString();
+  const picture = beside || frame;
+  if (!picture || one("x").value === "" || !film.pixels) return;
+  const [x, y] = ["x", "y"].map((id, i) => Math.floor(Number(one(id).value) * (i ? picture.height : picture.width) / film.pixels[i]));
+  const values = valuesAt(picture, x, y), text = (v) => Number(v.toPrecision(4)).toString();
   one("values").textContent = values
     ? `R G B A ${values.colour.map(text).join(" ")}${values.layer.length ? `; ${display.channel} ${values.layer.map(text).join(" ")}` : ""}` : "";
 }
@@ -99,7 +107,7 @@ let serverScene = null;
 const ahead = new Ahead(() => {
   takeValues();
   knobs.update(state.scene, state.edits);
-  overlay.update();
+  updateOverlay();
 });
 
 function takeValues() {
@@ -111,7 +119,7 @@ function set(values, stroke) {
   connection.set(values, stroke);
   ahead.add(values);
   takeValues();
-  overlay.update();
+  updateOverlay();
 }
 
 // Undo and other replacements of the scene discard this page's pending edits.
@@ -126,68 +134,40 @@ function turn(change) {
   connection.look(look);
   ahead.add({look});
   takeValues();
-  overlay.update();
+  updateOverlay();
 }
 
-// Parallel rays look nearer in a lower view.
-function approach(factor, stroke) {
-  const height = state.camera.orthographic_height;
-  if (height) set({"camera.orthographic_height": rounded(height * factor)}, stroke);
-  else turn((camera) => dolly(camera, factor));
+// Shows everything, or the selected shape.
+function frameSelected() {
+  const box = boxAround(state.boxes[gizmo.index()] ? [state.boxes[gizmo.index()]] : state.boxes);
+  if (!box || !state.camera) return;
+  const camera = framed(state.camera, film.aspect, box);
+  if (camera.orthographic_height) set({"camera.orthographic_height": rounded(camera.orthographic_height)}, newStroke());
+  turn(() => camera);
 }
 
-// Rotates the environment together with distant lights. from: the lights before.
-function turnLights(from, angle, stroke) {
-  const values = {};
-  from.forEach((light, index) => Object.entries(turnedLight(light, angle) || {}).forEach(([key, value]) => {
-    values[`${knobs.pathOf("lights", index)}.${key}`] = value;
-  }));
-  if (Object.keys(values).length) set(values, stroke);
+// Handles and tools for a shape, by its index; null: for none.
+function select(index) {
+  state.selected = index === null ? null : knobs.pathOf("shapes", index);
+  for (const button of one("tools").querySelectorAll("[data-mode]")) button.disabled = index === null;
+  gizmo.update();
 }
 
-// Two fingers pan by their middle, and dolly by their distance.
-const fingers = new Map();
-function pinch(now, height, stroke) {
-  const old = fingers.get(now.pointerId), [, other] = [...fingers].find(([id]) => id !== now.pointerId);
-  const apart = ([x, y]) => Math.max(1, Math.hypot(x - other[0], y - other[1]));
-  const next = [now.clientX, now.clientY];
-  fingers.set(now.pointerId, next);
-  turn((camera) => pan(camera, (next[0] - old[0]) / (2 * height), (next[1] - old[1]) / (2 * height)));
-  approach(apart(old) / apart(next), stroke);
+function setMode(mode) {
+  gizmo.setMode(mode);
+  for (const button of one("tools").querySelectorAll("[data-mode]")) button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
 }
 
-function dragCamera(event) {
-  if (event.button > 1 || !state.camera) return;
-  event.preventDefault();
-  if (event.pointerType === "touch") fingers.set(event.pointerId, [event.clientX, event.clientY]);
-  const canvas = one("picture"), stroke = newStroke(), height = canvas.getBoundingClientRect().height;
-  canvas.focus();
-  canvas.setPointerCapture(event.pointerId);
-  isDragging = true;
-  let last = [event.clientX, event.clientY];
-  const start = event.clientX, lights = state.scene.lights || [];
-  const move = (now) => {
-    if (now.pointerId !== event.pointerId) return;
-    if (fingers.size === 2) {
-      last = [now.clientX, now.clientY];
-      return pinch(now, height, stroke);
-    }
-    if (event.altKey) return turnLights(lights, -kTurn * (now.clientX - start) / height, stroke);
-    const x = (now.clientX - last[0]) / height, y = (now.clientY - last[1]) / height;
-    last = [now.clientX, now.clientY];
-    if (event.ctrlKey) return approach(Math.exp(2 * y), stroke);
-    turn((camera) => event.shiftKey ? pan(camera, x, y) : orbit(camera, -kTurn * x, -kTurn * y));
-  };
-  const end = (now) => {
-    if (now.pointerId !== event.pointerId) return;
-    fingers.delete(event.pointerId);
-    isDragging = false;
-    if (now.type === "pointerup" && Math.hypot(now.clientX - start, now.clientY - event.clientY) < kClick) pick(now);
-    canvas.removeEventListener("pointermove", move);
-    for (const name of ["pointerup", "pointercancel"]) canvas.removeEventListener(name, end);
-  };
-  canvas.addEventListener("pointermove", move);
-  for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, end);
+function takeSnapshot() {
+  if (!frame || frame.revision !== state.revision) return tell("the image of these settings is not there yet", false);
+  const shown = report?.revision === frame.revision ? report : null;
+  snapshots.add(frame, display, {edits: state.edits, look: state.scene.look, frame: state.frame}, shown);
+}
+
+function recall({edits, look, frame: number}) {
+  step({do: "recall", edits});
+  if (number !== state.frame) step({do: "frame", frame: number});
+  step(look ? {do: "look", ...look} : {do: "look_back"});
 }
 
 const pixelAt = (event) => {
@@ -199,22 +179,6 @@ const pixelAt = (event) => {
 function pick(event) {
   const [x, y] = pixelAt(event);
   if (x >= 0 && y >= 0) connection.send({do: "pick", x, y});
-}
-
-const keyStroke = pausedStroke();
-function wheelCamera(event) {
-  event.preventDefault();
-  approach(kKeyDolly ** Math.sign(event.deltaY), keyStroke());
-}
-
-function keyCamera(event) {
-  const [x, y] = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key] || [0, 0];
-  const nearer = {"+": 1 / kKeyDolly, "=": 1 / kKeyDolly, "-": kKeyDolly}[event.key];
-  if (!(x || y || nearer) || event.ctrlKey) return;
-  event.preventDefault();
-  if (event.altKey) return turnLights(state.scene.lights || [], -kKeyTurn * x, keyStroke());
-  if (nearer) return approach(nearer, keyStroke());
-  turn((camera) => event.shiftKey ? pan(camera, kKeyPan * x, kKeyPan * y) : orbit(camera, -kKeyTurn * x, -kKeyTurn * y));
 }
 
 function tell(text, isGood = true) {
@@ -239,6 +203,7 @@ function chooseChannel() {
 
 // Image on the left of the wipe: a pinned image, or a reference.
 function compare(picture, method) {
+  if (picture !== snapshots.sides.left?.picture) snapshots.forget("left");
   pinned = picture;
   one("pin").setAttribute("aria-pressed", String(Boolean(pinned)));
   one("wipe").disabled = !pinned && !method;
@@ -266,14 +231,18 @@ function takeScene(message) {
   const isNewFile = state.path !== message.path;
   state.path = message.path;
   if (isNewFile) ahead.clear();
-  serverScene = {...message.scene, look: message.look};
+  serverScene = {...message.scene, look: message.look, floor: message.floor};
   Object.assign(state, {revision: message.revision, edits: message.edits, command: message.command});
   takeValues();
   takeFilm();
   document.title = `${message.file} · opaline view`;
   one("file").textContent = message.file;
   if (isNewFile) {
+    snapshots.clear();
+    beside = null;
     compare(null, "");
+    bookmarks.open(message.path);
+    select(null);
     one("name").value = message.file.replace(/(\.(json|glb|gltf|obj|ply|stl|off))?$/i, "-edited");
     setExposure(message.scene.film?.exposure || 0);
     one("transform").value = display.transform = message.scene.film?.view || "soft";
@@ -282,17 +251,19 @@ function takeScene(message) {
   one("redo").disabled = !message.redo;
   one("reset").disabled = !message.edits.length;
   one("keep-look").disabled = one("look-back").disabled = !message.look;
+  one("key-look").disabled = !message.look;
   one("whose-camera").textContent = message.look ? "free" : "scene";
   one("failed").hidden = true;
   takeFrames(message);
   knobs.update(state.scene, state.edits);
+  if (gizmo.index() < 0) select(null);
   fit();
 }
 
 // A slider held by the user keeps its position.
 function takeFrames({frames, frame: now}) {
-  one("frames").hidden = frames.length < 2;
-  state.frames = frames;
+  one("frames").hidden = one("key-look").hidden = frames.length < 2;
+  Object.assign(state, {frames, frame: now});
   one("playhead").max = Math.max(0, frames.length - 1);
   if (!one("playhead").matches(":active")) one("playhead").value = Math.max(0, frames.indexOf(now));
   one("shown-frame").textContent = now;
@@ -328,7 +299,9 @@ const takes = {
   scene: takeScene,
   plan: (message) => {
     plan = message;
+    state.boxes = message.boxes;
     report = null;
+    updateOverlay();
     one("error").textContent = "";
     showPlan();
   },
@@ -366,7 +339,10 @@ const takes = {
     one("compared").textContent = `${message.method}: ${message.samples} ${each}, noise ${message.noise ? percent(message.noise) : "unknown"}; ` +
       `the final image differs by ${percent(message.difference)} (rms of the diffuse light over translucent pixels, without this noise)`;
   },
-  picked: ({shape}) => { if (shape !== null) knobs.reveal(`shapes.${shape}`); },
+  picked: ({shape}) => {
+    select(shape);
+    if (shape !== null) knobs.reveal(`shapes.${shape}`);
+  },
   // A refused edit is dropped: the scene message follows.
   told: (message) => {
     if (!message.good) ahead.clear();
@@ -394,7 +370,21 @@ const connection = new Connection({
   },
 });
 const knobs = new Knobs(one("panel"), set, (text) => { one("help").textContent = text; one("told").textContent = ""; }, step);
-const overlay = new Overlay(one("overlay"), state, set, (name, index) => knobs.pathOf(name, index));
+const pathOf = (list, index) => knobs.pathOf(list, index);
+const overlay = new Overlay(one("overlay"), state, set, pathOf);
+const gizmo = new Gizmo(one("overlay"), state, set, pathOf);
+const updateOverlay = () => {
+  overlay.update();
+  gizmo.update();
+};
+const canvas = one("picture");
+const cameraInput = new CameraInput(canvas, state, {turn, set, pathOf, click: pick});
+const bookmarks = new Bookmarks(one("views"), (look) => step({do: "look", ...look}), tell);
+const snapshots = new Snapshots(one("snapshots"), recall, ({left, right}) => {
+  if (right !== undefined) beside = right;
+  if (left !== undefined) compare(left, "");
+  else redraw();
+});
 
 const trade = new Trade(one("points"), takePoint);
 
@@ -413,6 +403,11 @@ for (const word of ["undo", "redo", "reset"]) one(word).onclick = () => step({do
 one("show-keys").onclick = () => one("keys").showModal();
 one("keep-look").onclick = () => step({do: "keep_look"});
 one("look-back").onclick = () => step({do: "look_back"});
+one("key-look").onclick = () => step({do: "key_look"});
+one("store-view").onclick = () => bookmarks.store(lookOf(state.camera));
+one("snapshot").onclick = takeSnapshot;
+one("frame-selected").onclick = frameSelected;
+for (const button of one("tools").querySelectorAll("[data-mode]")) button.onclick = () => setMode(button.dataset.mode);
 one("copy").onclick = copyCommand;
 one("save").onclick = () => connection.send({do: "save", name: one("name").value + ".json"});
 one("render").onclick = () => connection.send({do: "render", name: one("name").value + ".exr"});
@@ -429,17 +424,22 @@ one("channel").onchange = chooseChannel;
 one("wipe").oninput = redraw;
 one("playhead").oninput = () => step({do: "frame", frame: state.frames[Number(one("playhead").value)]});
 for (const id of ["x", "y"]) one(id).oninput = inspect;
-const canvas = one("picture");
-canvas.addEventListener("pointerdown", dragCamera);
-canvas.addEventListener("wheel", wheelCamera, {passive: false});
-canvas.addEventListener("keydown", keyCamera);
 canvas.addEventListener("pointermove", (event) => {
-  if (!film.pixels || isDragging) return;
+  if (!film.pixels || cameraInput.isDragging) return;
   [one("x").value, one("y").value] = pixelAt(event);
   inspect();
 });
+const kKeys = {f: frameSelected, s: takeSnapshot, w: () => setMode("move"), e: () => setMode("turn"), r: () => setMode("scale"),
+  escape: () => select(null), "?": () => one("keys").showModal()};
 addEventListener("keydown", (event) => {
-  if (event.key === "?" && !event.target.matches("input")) one("keys").showModal();
+  const isTyped = event.target.matches("select, input:not([type=range], [type=checkbox])");
+  if (isTyped || event.ctrlKey || event.altKey || event.metaKey || one("keys").open || !state.camera) return;
+  const number = /^Digit([1-9])$/.exec(event.code)?.[1];
+  if (number && event.shiftKey) bookmarks.store(lookOf(state.camera), number);
+  else if (number) bookmarks.go(number);
+  else kKeys[event.key.toLowerCase()]?.();
+});
+addEventListener("keydown", (event) => {
   if (!event.ctrlKey || event.key.toLowerCase() !== "z" || event.target.matches("input[type=number], #name")) return;
   event.preventDefault();
   step({do: event.shiftKey ? "redo" : "undo"});
