@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bodies/surface_boundaries.h"
 #include "core/random.h"
 #include "lights/light.h"
 #include "lights/light_tree.h"
@@ -29,7 +30,8 @@ std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::si
                                            std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
   const BodyPlan& plan = input.plan.groups[group];
-  return compute_irradiance({input.rays, samples, lights, boundary_of(input.scene.media[plan.medium]),
+  return compute_irradiance({input.rays, samples, lights,
+                             boundaries_of(input.scene, input.world)[plan.meshes.front()],
                              settings.light_samples, hash_bits(settings.seed, group + 1000), input.monitor,
                              plan.cell > 0});
 }

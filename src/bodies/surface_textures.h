@@ -89,6 +89,8 @@ class SurfaceTextures {
 
 /// Number of a texture; none: no texture.
 std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Place& place);
+/// The same for a colour.
+std::optional<RgbF> color_at(const Texture* texture, const SurfaceTextures::Place& place);
 inline const Texture* pointer_to(const std::optional<Texture>& texture) {
   return texture ? &*texture : nullptr;
 }
@@ -105,6 +107,9 @@ std::vector<RgbF> entering_tints(const SurfaceTextures& textures, std::span<cons
 
 /// Adds the space of textures without UVs to a key, for shapes with such textures.
 void add_solid_space(KeyBuilder& key, const Scene& scene, std::size_t shape);
+/// Adds the UVs of meshes, or the space of textures without them.
+void add_spaces(KeyBuilder& key, const Scene& scene, const World& world,
+                std::span<const std::uint32_t> meshes);
 /// Adds a scene's texture to a key: its file's contents and mapping; with the UVs of some meshes.
 void add_to_key(KeyBuilder& key, const Texture& texture);
 /// A mesh's vertex colours, at the wavelengths of the scene.

@@ -79,7 +79,9 @@ void trace_transfers(const IrradianceInput& input, std::span<const Light> lights
     batch.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceSample& s = input.samples[i];
-      batch.add(entered_at(input, input.rays.surface_point(s.mesh, s.triangle, s.u, s.v)), i);
+      SurfacePoint point = entered_at(input, input.rays.surface_point(s.mesh, s.triangle, s.u, s.v));
+      point.width = std::sqrt(s.area);
+      batch.add(point, i);
     }
     const Halves halves(batch.samples());
     std::vector<std::vector<std::array<double, 2>>> sums(lights.size(),

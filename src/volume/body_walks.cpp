@@ -52,7 +52,8 @@ class BodyWalks::Walker {
 
   void arrive(const BoundaryPoint& point, const ArrivedLight& light, double weight) {
     const double cosine = std::min(1.0, -dot(point.normal, light.direction));
-    const double reflectance = fresnel_reflectance(cosine, medium_.eta), past_fuzz = passes_fuzz(cosine),
+    const double reflectance = fresnel_reflectance(cosine, medium_.eta),
+                 past_fuzz = passes_fuzz(point, cosine),
                  enters = weight * past_fuzz * (1 - reflectance);
     counts_.entered += enters;
     if (enters > 0)
@@ -69,7 +70,14 @@ class BodyWalks::Walker {
   }
 
  private:
-  double passes_fuzz(double cosine) const { return double(body_.input_.boundary.past_fuzz(float(cosine))); }
+  double passes_fuzz(const BoundaryPoint& at, double cosine) const {
+    const OuterBoundary& boundary = body_.input_.boundary;
+    if (!boundary.is_textured()) return double(boundary.past_fuzz(float(cosine)));
+    SurfacePoint point{};
+    point.mesh = at.mesh, point.triangle = at.triangle;
+    point.u = at.u, point.v = at.v;
+    return double(boundary.at(point).past_fuzz(float(cosine)));
+  }
 
   // Continues light that has left or was reflected, and may re-enter. Uses its own random numbers: without
   // re-entry, the walks are unchanged.
@@ -87,12 +95,12 @@ class BodyWalks::Walker {
       const std::optional<BoundaryPoint> met = body_.inside_.entry(from, direction);
       if (!met) return;
       const double cosine = std::min(1.0, -dot(met->normal, direction));
-      weight *= passes_fuzz(cosine);
+      weight *= passes_fuzz(*met, cosine);
       if (outside_numbers_.next() >= fresnel_reflectance(cosine, medium_.eta)) {
         pending_.push_back({met->inside(), refracted_inward(direction, met->normal, medium_.eta), weight, 0});
         return;
       }
-      weight *= passes_fuzz(cosine);
+      weight *= passes_fuzz(*met, cosine);
       direction = mirrored(direction, met->normal);
       from = met->outside();
     }

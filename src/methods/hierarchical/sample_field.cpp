@@ -122,8 +122,9 @@ LeavingLight SampleField::at_points(const SurfaceHits& hits, PointIrradianceInpu
       state_.cache() != nullptr && asks_irradiance_
           ? looked_up(hits, light.irradiance)
           : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
-  // Beside edges of a tint, the samples' irradiance differs from the point's own without a shadow edge.
-  if (looks_near && group_.entering.empty()) refine_near_field(lighting, exitance, light);
+  // Beside edges of a tint or fuzz, the samples' irradiance differs from the point's own without a shadow edge.
+  if (looks_near && group_.entering.empty() && !group_.boundary.is_textured())
+    refine_near_field(lighting, exitance, light);
   put_exitance(exitance, light);
   return light;
 }

@@ -31,7 +31,8 @@ std::vector<StageKey> walk_keys(const BodyStages& stages, const VolumeInput& wal
   common.add(settings_in_key(KeyedStage::walks, stages.input.scene));
   for (const HomogeneousMedium& medium : walks.media) common.add(medium);
   if (medium_inside != StageKey{}) common.add(medium_inside);
-  add_fuzz(common, stages.input.scene.media[stages.body.plan.medium].fuzz);
+  const Scene& scene = stages.input.scene;
+  add_fuzz(common, scene, stages.input.world, scene.media[stages.body.plan.medium].fuzz, walks.meshes);
   for (const std::uint32_t m : walks.meshes) common.add(m);
   for (const MeshKeys& mesh : stages.mesh_keys) common.add(mesh.shape);
   const bool alone = walks_by_light(walks);
