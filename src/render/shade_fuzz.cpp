@@ -39,7 +39,7 @@ void Shader::add_fuzz(const SurfaceHits& hits, const OuterBoundary& boundary, st
                [&](std::size_t l, std::size_t i, const Vec3f& towards, float irradiance) {
                  const float value =
                      boundary_at(i).fuzz_value(cosines[i], std::min(1.f, dot(hits.points[i].normal, towards)),
-                                         dot(towards_eye[i], towards));
+                                               dot(towards_eye[i], towards));
                  specular(i) += emitted_[l] * colors[i] * (irradiance * value);
                });
   for (std::size_t i = 0; i < arriving.size(); ++i) {

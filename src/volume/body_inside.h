@@ -46,8 +46,13 @@ class BodyInside {
   std::optional<BoundaryPoint> entry(const Vec3d& from, const Vec3d& direction) const;
 
   BoundaryPoint at(const SurfacePoint& point) const {
-    return {Vec3d(point.position), Vec3d(point.geometric), double(rays_.offset(point)), point.mesh, point.triangle,
-            point.u, point.v};
+    return {Vec3d(point.position),
+            Vec3d(point.geometric),
+            double(rays_.offset(point)),
+            point.mesh,
+            point.triangle,
+            point.u,
+            point.v};
   }
 
  private:

@@ -53,8 +53,7 @@ class BodyWalks::Walker {
   void arrive(const BoundaryPoint& point, const ArrivedLight& light, double weight) {
     const double cosine = std::min(1.0, -dot(point.normal, light.direction));
     const double reflectance = fresnel_reflectance(cosine, medium_.eta),
-                 past_fuzz = passes_fuzz(point, cosine),
-                 enters = weight * past_fuzz * (1 - reflectance);
+                 past_fuzz = passes_fuzz(point, cosine), enters = weight * past_fuzz * (1 - reflectance);
     counts_.entered += enters;
     if (enters > 0)
       pending_.push_back(
@@ -188,7 +187,7 @@ class BodyWalks::Walker {
     }
     counts_.flux[body_.cells_.at(Vec3f(point.position), Vec3f(point.normal))] += float(weight);
     const Vec3d outward = refracted_outward(direction, point.normal, medium_.eta);
-    send_outside(point, outward, weight * passes_fuzz(dot(outward, point.normal)));
+    send_outside(point, outward, weight * passes_fuzz(point, dot(outward, point.normal)));
   }
 
   const BodyWalks& body_;
