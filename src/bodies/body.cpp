@@ -30,9 +30,17 @@ std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::si
                                            std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
   const BodyPlan& plan = input.plan.groups[group];
-  return compute_irradiance(
-      {input.rays, samples, lights, boundaries_of(input.scene, input.world)[plan.meshes.front()],
-       settings.light_samples, hash_bits(settings.seed, group + 1000), input.monitor, plan.cell > 0});
+  IrradianceInput traced{input.rays,
+                         samples,
+                         lights,
+                         boundaries_of(input.scene, input.world)[plan.meshes.front()],
+                         settings.light_samples,
+                         hash_bits(settings.seed, group + 1000),
+                         input.monitor,
+                         plan.cell > 0};
+  const SurfaceTextures textures(input.scene, input.world);
+  if (textures.bends(plan.meshes)) traced.bend = [&](SurfacePoint& point) { return textures.bend(point); };
+  return compute_irradiance(traced);
 }
 
 std::vector<Light> recentred_lights(const Scene& scene, const World& world) {

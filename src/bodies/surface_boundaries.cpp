@@ -31,16 +31,6 @@ class FuzzSteps {
   std::array<const FuzzLayer*, kCount> layers_{};
 };
 
-/// Width of the filter at a point, in all directions.
-Footprint footprint_at(const SurfacePoint& point) {
-  Footprint footprint;
-  if (!(point.width > 0)) return footprint;
-  tangent_frame(point.geometric, footprint.x, footprint.y);
-  footprint.x *= point.width;
-  footprint.y *= point.width;
-  return footprint;
-}
-
 std::uint64_t hash_of(const Scene& scene, const World& world, const Fuzz& fuzz,
                       std::span<const std::uint32_t> meshes) {
   KeyBuilder key("textures of fuzz", 1);
@@ -58,7 +48,7 @@ std::shared_ptr<const FuzzTextures> textures_of_fuzz(const Scene& scene, const W
   const auto at = [fuzz, steps, even, surfaces = std::move(surfaces)](const SurfacePoint& point) {
     if (point.mesh == SurfacePoint::kNoMesh) return even;
     const SurfaceTextures::Place place =
-        surfaces->place(point.mesh, point.triangle, point.u, point.v, footprint_at(point));
+        surfaces->place(point.mesh, point.triangle, point.u, point.v, footprint_of(point));
     const float weight = number_at(pointer_to(fuzz.weight_texture), place).value_or(even.weight);
     if (!(weight > 0)) return LocalFuzz{};
     if (steps) return steps->at(weight, *number_at(pointer_to(fuzz.roughness_texture), place));

@@ -323,6 +323,21 @@ float SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
   return variance;
 }
 
+float SurfaceTextures::bend(SurfacePoint& point) const {
+  const OfMesh& own = of_mesh_[point.mesh];
+  if (own.normals == nullptr && own.heights == nullptr) return 1;
+  constexpr float kLeastCosine = .1f;  // of slopes up to 10
+  const Vec3f before = point.normal;
+  bend(place(point.mesh, point.triangle, point.u, point.v, footprint_of(point)), point);
+  return 1 / std::max(kLeastCosine, dot(point.normal, before));
+}
+
+bool SurfaceTextures::bends(std::span<const std::uint32_t> meshes) const {
+  return std::ranges::any_of(meshes, [&](std::uint32_t m) {
+    return of_mesh_[m].normals != nullptr || of_mesh_[m].heights != nullptr;
+  });
+}
+
 bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh) {
   const auto* file = std::get_if<MeshFile>(&shape.source);
   if (file == nullptr || mesh.colors.empty()) return false;
@@ -431,6 +446,15 @@ StageKey medium_key(const Scene& scene, const World& world, std::span<const std:
   if (medium.radius_texture) add_to_key(key.add(std::string("radius")), *medium.radius_texture);
   add_spaces(key, scene, world, meshes);
   return key.key();
+}
+
+Footprint footprint_of(const SurfacePoint& point) {
+  Footprint footprint;
+  if (!(point.width > 0)) return footprint;
+  tangent_frame(point.geometric, footprint.x, footprint.y);
+  footprint.x *= point.width;
+  footprint.y *= point.width;
+  return footprint;
 }
 
 Footprint footprint_of(const SurfacePoint& point, const Vec3f& direction, float width) {

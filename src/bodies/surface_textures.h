@@ -68,6 +68,10 @@ class SurfaceTextures {
   /// Bends the point's shading normal by the normal map and then the bump map, if present. Returns the variance of
   /// the normal map's slopes within the footprint, along each axis.
   float bend(const Place& place, SurfacePoint& point) const;
+  /// The same over the width of a point, in all directions. Returns the area of the mapped surface over its own.
+  float bend(SurfacePoint& point) const;
+  /// True if one of the meshes has such maps.
+  bool bends(std::span<const std::uint32_t> meshes) const;
 
  private:
   struct OfMesh {
@@ -123,6 +127,8 @@ StageKey tint_key(const Scene& scene, const World& world, std::span<const std::u
 /// none.
 StageKey medium_key(const Scene& scene, const World& world, std::span<const std::uint32_t> meshes);
 
+/// Square footprint of the width of a point.
+Footprint footprint_of(const SurfacePoint& point);
 /// Footprint of a cone on a surface.
 /// in    direction: of the ray, of any length; width: of the cone there
 Footprint footprint_of(const SurfacePoint& point, const Vec3f& direction, float width);

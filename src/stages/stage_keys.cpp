@@ -89,6 +89,18 @@ void add_fuzz(KeyBuilder& key, const Scene& scene, const World& world, const Fuz
   if (fuzz.weight_texture || fuzz.roughness_texture) add_spaces(key, scene, world, meshes);
 }
 
+void add_maps(KeyBuilder& key, const Scene& scene, const World& world,
+              std::span<const std::uint32_t> meshes) {
+  for (const std::uint32_t m : meshes) {
+    const Shape& shape = scene.shapes[m];
+    if (!shape.normal_map && !shape.bump_map) continue;
+    for (const auto& map : {&shape.normal_map, &shape.bump_map})
+      if (*map) add_to_key(key.add(std::string("map")).add(m), **map);
+    add_coordinates(key, world.meshes[m]);
+    add_solid_space(key, scene, m);
+  }
+}
+
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
                       std::size_t group, const Light& light) {
   const BodyPlan& plan = input.plan.groups[group];
@@ -103,6 +115,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
         .add(std::uint64_t(group))
         .add(light_seed(0, light));
   if (plan.cell > 0) key.add(std::string("geometric normals"));
+  add_maps(key, input.scene, input.world, plan.meshes);
   for (std::uint32_t m = 0; m < meshes.size(); ++m)
     if (may_shadow(meshes, m, plan, light, input.world.unit)) key.add(meshes[m].shape);
   return key.key();
