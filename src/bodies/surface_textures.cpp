@@ -326,10 +326,10 @@ float SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
 float SurfaceTextures::bend(SurfacePoint& point) const {
   const OfMesh& own = of_mesh_[point.mesh];
   if (own.normals == nullptr && own.heights == nullptr) return 1;
-  constexpr float kLeastCosine = .1f;  // of slopes up to 10
+  constexpr float kLeastCosine = .1f;
   const Vec3f before = point.normal;
   bend(place(point.mesh, point.triangle, point.u, point.v, footprint_of(point)), point);
-  return 1 / std::max(kLeastCosine, dot(point.normal, before));
+  return 1 / std::sqrt(std::max(kLeastCosine, dot(point.normal, before)));
 }
 
 bool SurfaceTextures::bends(std::span<const std::uint32_t> meshes) const {

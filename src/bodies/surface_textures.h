@@ -68,7 +68,8 @@ class SurfaceTextures {
   /// Bends the point's shading normal by the normal map and then the bump map, if present. Returns the variance of
   /// the normal map's slopes within the footprint, along each axis.
   float bend(const Place& place, SurfacePoint& point) const;
-  /// The same over the width of a point, in all directions. Returns the area of the mapped surface over its own.
+  /// The same over the width of a point, in all directions. Returns a factor of the light entering, which tilted parts
+  /// lose in uniform light: 1 / sqrt(c) with the cosine c of the tilt, within 0.2 % of 2 / (1 + c) up to 27 degrees.
   float bend(SurfacePoint& point) const;
   /// True if one of the meshes has such maps.
   bool bends(std::span<const std::uint32_t> meshes) const;

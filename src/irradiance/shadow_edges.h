@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// Gives the point the normal used for transmission; returns the area of the mapped surface over its own.
+/// Gives the point the normal used for transmission; returns a factor of the light.
 inline float enter_at(const IrradianceInput& input, SurfacePoint& point) {
   if (input.geometric_normals) point.normal = point.geometric;
   return input.bend ? input.bend(point) : 1;
