@@ -8,6 +8,7 @@
 #include "core/random.h"
 #include "lights/light.h"
 #include "lights/light_tree.h"
+#include "scene/scene_properties.h"
 #include "volume/cut_outer_surface.h"
 
 namespace opaline {
@@ -38,8 +39,9 @@ std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::si
                          hash_bits(settings.seed, group + 1000),
                          input.monitor,
                          plan.cell > 0};
+  if (!has_maps(input.scene, plan.meshes)) return compute_irradiance(traced);
   const SurfaceTextures textures(input.scene, input.world);
-  if (textures.bends(plan.meshes)) traced.bend = [&](SurfacePoint& point) { return textures.bend(point); };
+  traced.bend = [&](SurfacePoint& point) { return textures.bend(point); };
   return compute_irradiance(traced);
 }
 

@@ -332,12 +332,6 @@ float SurfaceTextures::bend(SurfacePoint& point) const {
   return 1 / std::sqrt(std::max(kLeastCosine, dot(point.normal, before)));
 }
 
-bool SurfaceTextures::bends(std::span<const std::uint32_t> meshes) const {
-  return std::ranges::any_of(meshes, [&](std::uint32_t m) {
-    return of_mesh_[m].normals != nullptr || of_mesh_[m].heights != nullptr;
-  });
-}
-
 bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh) {
   const auto* file = std::get_if<MeshFile>(&shape.source);
   if (file == nullptr || mesh.colors.empty()) return false;

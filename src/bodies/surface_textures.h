@@ -71,8 +71,6 @@ class SurfaceTextures {
   /// The same over the width of a point, in all directions. Returns a factor of the light entering, which tilted parts
   /// lose in uniform light: 1 / sqrt(c) with the cosine c of the tilt, within 0.2 % of 2 / (1 + c) up to 27 degrees.
   float bend(SurfacePoint& point) const;
-  /// True if one of the meshes has such maps.
-  bool bends(std::span<const std::uint32_t> meshes) const;
 
  private:
   struct OfMesh {

@@ -221,6 +221,14 @@ SphereExits BodyWalks::exits_of(std::size_t pass) const {
   return {std::clamp(starts_ / kStarts, kFewest, kMost), hash_bits(input_.seed + 1, pass)};
 }
 
+// Light entering by the normals of maps, over the surface's own.
+double BodyWalks::bent_share(SurfacePoint point, const ArrivedLight& light) const {
+  const double cosine = -dot(Vec3d(point.geometric), light.direction);
+  point.normal = point.geometric;
+  const double factor = double(input_.bend(point));
+  return factor * std::max(0., -dot(Vec3d(point.normal), light.direction)) / cosine;
+}
+
 // Channels of a light share the starts, so their difference has no noise from them.
 WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chunk,
                            const SphereExits& exits) const {
@@ -238,6 +246,7 @@ WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chu
     double irradiance = light.irradiance[job.channel];
     if (irradiance > 0 && input_.entering_tint)
       irradiance *= double(input_.entering_tint(at.mesh, at.triangle, at.u, at.v)[job.channel]);
+    if (irradiance > 0 && input_.bend) irradiance *= bent_share(entry, light);
     if (!(irradiance > 0)) continue;
     Walker(*this, job.channel, exits, counts, WalkNumbers(job.seed + 1 + 2 * job.channel, start),
            WalkNumbers(job.seed + 2 + 2 * job.channel, start), irradiance)

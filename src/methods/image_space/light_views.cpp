@@ -192,7 +192,7 @@ class Views {
       direction = sample.direction;
       weights[0] = sample.weight;
     }
-    const float facing = dot(point.geometric, direction),
+    const float facing = dot(point.geometric, direction), factor = textures_.bend(point),
                 cosine = std::min(1.f, dot(point.normal, direction));
     if (!(facing > 0) || !(cosine > 0)) return;
     RgbF emitted;
@@ -204,7 +204,7 @@ class Views {
       emitted = emitted * textures_.tint(place).entering;
     }
     points.push_back({point.position, across / std::max(facing, kLeastCosine),
-                      emitted * (cosine * boundary_.at(point).transmittance(cosine)), point.normal});
+                      emitted * (factor * cosine * boundary_.at(point).transmittance(cosine)), point.normal});
   }
 
   const PrecomputeInput& input_;
