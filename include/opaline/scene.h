@@ -82,7 +82,7 @@ struct Texture {
   /// ThreeWavelengths::from_rgb, applied to its colours before `scale`; none: red, green and blue.
   std::optional<std::array<Rgb, 3>> from_rgb{};
   std::vector<Texture> details{};  ///< by their blends; those of a normal map turn its normals further
-  DetailBlend blend = DetailBlend::relative;  ///< of a detail
+  DetailBlend blend = DetailBlend::relative;  ///< as a detail
   SourcePlace place{};
   friend bool operator==(const Texture&, const Texture&) = default;
 };

@@ -18,7 +18,7 @@ struct LocalFuzz {
   float weight = 0;
   const FuzzLayer* layer = nullptr;  ///< null: no fuzz
   const FuzzLayer* other = nullptr;  ///< null: the layer alone
-  float share = 0;                   ///< of the other
+  float share = 0;                   ///< weight of the other
   friend bool operator==(const LocalFuzz&, const LocalFuzz&) = default;
 
   float reflectance(float cosine) const {
@@ -43,7 +43,7 @@ struct LocalFuzz {
 /// Fuzz with another weight or roughness at other points.
 struct FuzzTextures {
   std::function<LocalFuzz(const SurfacePoint&)> at;
-  std::uint64_t hash = 0;  ///< of the textures and the coordinates of their meshes
+  std::uint64_t hash = 0;  ///< hash of the textures and the coordinates of their meshes
 };
 
 /// A smooth dielectric boundary or none, below fuzz or not. A rough boundary transmits as a smooth one.

@@ -63,8 +63,8 @@ std::uint64_t key_of(const Vec3f& p) {
 
 /// True if a cache can store the exitance depending on the point's own irradiance, so images trace no shadow
 /// rays. Excludes meshes without smooth normals, whose facets differ in irradiance; mean free paths far below
-/// the sample spacing, whose shadows are too sharp to interpolate; textures of fuzz; maps of normals and heights; and bounced light, computed at
-/// the image's points only.
+/// the sample spacing, whose shadows are too sharp to interpolate; textures of fuzz; maps of normals and heights;
+/// and bounced light, computed at the image's points only.
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group) {
   const SplitKernel& kernel = hierarchical_state(group).kernel();
   const auto& own = kernel.own_irradiance;
