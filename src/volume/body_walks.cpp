@@ -222,11 +222,14 @@ SphereExits BodyWalks::exits_of(std::size_t pass) const {
 }
 
 // Light entering by the normals of maps, over the surface's own.
-double BodyWalks::bent_share(SurfacePoint point, const ArrivedLight& light) const {
-  const double cosine = -dot(Vec3d(point.geometric), light.direction);
+double BodyWalks::bent_share(SurfacePoint point, const ArrivedLight& light, double eta) const {
+  const double cosine = std::min(1., -dot(Vec3d(point.geometric), light.direction));
   point.normal = point.geometric;
-  const double factor = double(input_.bend(point));
-  return factor * std::max(0., -dot(Vec3d(point.normal), light.direction)) / cosine;
+  const double factor = double(input_.bend(point)),
+               bent = std::min(1., -dot(Vec3d(point.normal), light.direction));
+  if (!(bent > 0)) return 0;
+  const double entering = 1 - fresnel_reflectance(bent, eta), own = 1 - fresnel_reflectance(cosine, eta);
+  return factor * bent / cosine * (own > 0 ? entering / own : 1);
 }
 
 // Channels of a light share the starts, so their difference has no noise from them.
@@ -246,7 +249,7 @@ WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chu
     double irradiance = light.irradiance[job.channel];
     if (irradiance > 0 && input_.entering_tint)
       irradiance *= double(input_.entering_tint(at.mesh, at.triangle, at.u, at.v)[job.channel]);
-    if (irradiance > 0 && input_.bend) irradiance *= bent_share(entry, light);
+    if (irradiance > 0 && input_.bend) irradiance *= bent_share(entry, light, medium(job.channel).eta);
     if (!(irradiance > 0)) continue;
     Walker(*this, job.channel, exits, counts, WalkNumbers(job.seed + 1 + 2 * job.channel, start),
            WalkNumbers(job.seed + 2 + 2 * job.channel, start), irradiance)
