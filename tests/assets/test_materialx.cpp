@@ -220,7 +220,7 @@ TEST(MaterialX, ImagesOfFuzzAreTextures) {
   };
   const ImportedAsset all = import(R"(<input name="fuzz_weight" type="float" nodegraph="NG" output="out"/>
     <input name="fuzz_color" type="color3" nodename="c"/><input name="fuzz_roughness" type="float" nodename="w"/>)");
-  const Json keys = Json::parse(all.text).at("shapes").at(0);
+  const Json keys = Json::parse(all.text, nullptr, true, true).at("shapes").at(0);
   EXPECT_TRUE(keys.at("fuzz_weight").at("texture").get<std::string>().ends_with("w.png")) << all.text;
   EXPECT_EQ(keys.at("fuzz_weight").at("uv_scale"), Json({2, 3}));
   EXPECT_EQ(keys.at("fuzz_color").at("color_space"), "srgb");
@@ -229,7 +229,7 @@ TEST(MaterialX, ImagesOfFuzzAreTextures) {
   const ImportedAsset lost = import(
       R"(<input name="fuzz_weight" value="0.5"/><input name="fuzz_color" type="color3" nodename="x"/>)");
   EXPECT_TRUE(has(lost.not_carried, "fuzz_color: it is connected to no image"));
-  EXPECT_EQ(Json::parse(lost.text).at("shapes").at(0).at("fuzz_weight"), .5);
+  EXPECT_EQ(Json::parse(lost.text, nullptr, true, true).at("shapes").at(0).at("fuzz_weight"), .5);
 }
 
 // Claim: a bump of an image that the surface's normal is connected to, directly or through a graph, is a bump map of its

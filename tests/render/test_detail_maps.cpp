@@ -66,7 +66,7 @@ TEST(DetailMaps, Overlay) {
         sheet(folder,
               R"("reflectance": {"texture": "base.exr", "detail": [{"blend": "overlay", "texture": ")" +
                   detail + R"("})" + more),
-        8, 8, "albedo.G");
+        12, 8, "albedo.G");
   };
   const auto even = [&](double value) {
     put_even(folder.file("detail.exr"), {value, value, .2});

@@ -164,7 +164,7 @@ TEST(FuzzTextures, BouncedLight) {
       {"quad": {"corner": [-10, 0, 0], "u": [20, 0, 0], "v": [0, 20, 0]}, "reflectance": 0.8, "fuzz_color": 0, "fuzz_roughness": 0.8,
        "fuzz_weight": )" + weight +
                                   R"(}],
-      "lights": [{"type": "spot", "position": [0, 40, 5], "target": [0, 0, 5], "intensity": 3000, "angle": 14}],
+      "lights": [{"type": "spot", "position": [0, 40, 5], "direction": [0, -1, 0], "intensity": 3000, "outer_angle": 5}],
       "camera": {"position": [0, 5, 60], "look_at": [0, 5, 0], "field_of_view": 9},
       "film": {"resolution": [32, 16], "pixel_type": "float"}, "settings": {"bounces": 1}})");
   };

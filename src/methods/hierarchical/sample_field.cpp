@@ -123,9 +123,8 @@ LeavingLight SampleField::at_points(const SurfaceHits& hits, PointIrradianceInpu
       state_.cache() != nullptr && asks_irradiance_
           ? looked_up(hits, light.irradiance)
           : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
-  // Beside edges of a tint, fuzz or bump, the samples' irradiance differs from the point's own without a shadow edge.
-  if (looks_near && group_.entering.empty() && !group_.boundary.is_textured() &&
-      !has_maps(input_.scene, group_.plan.meshes))
+  // Beside edges of a tint or bump, the samples' irradiance differs from the point's own without a shadow edge.
+  if (looks_near && group_.entering.empty() && !has_maps(input_.scene, group_.plan.meshes))
     refine_near_field(lighting, exitance, light);
   put_exitance(exitance, light);
   return light;
