@@ -219,7 +219,7 @@ TEST(MaterialX, ImagesOfFuzzAreTextures) {
     return folder.import("cube.glb");
   };
   const ImportedAsset all = import(R"(<input name="fuzz_weight" type="float" nodegraph="NG" output="out"/>
-    <input name="fuzz_color" type="color3" nodename="c"/><input name="fuzz_roughness" type="float" nodename="w"/>)");
+    <input name="fuzz_color" type="color3" nodename="c"/><input name="fuzz_roughness" type="float" nodegraph="NG" output="out"/>)");
   const Json keys = Json::parse(all.text, nullptr, true, true).at("shapes").at(0);
   EXPECT_TRUE(keys.at("fuzz_weight").at("texture").get<std::string>().ends_with("w.png")) << all.text;
   EXPECT_EQ(keys.at("fuzz_weight").at("uv_scale"), Json({2, 3}));

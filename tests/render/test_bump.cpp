@@ -151,7 +151,7 @@ TEST(BumpMap, LightEntersByItsNormals) {
             map +
             R"(}], "lights": [{"type": "directional", "direction": [-0.8660254, 0, -0.5], "irradiance": 3}],
             "camera": {"position": [0, 0, 100], "field_of_view": 4}, "film": {"resolution": [8, 8], "pixel_type": "float"},
-            "settings": {"bounces": 0, "samples": 3000, "cell_size": 3, "entry_samples": 64, "method": ")" +
+            "settings": {"bounces": 0, "samples": 1200, "cell_size": 4, "entry_samples": 64, "method": ")" +
             method + R"("}})");
     double sum = 0;
     for (int y = 0; y < 8; ++y)

@@ -24,7 +24,7 @@ std::string box_scene(const std::string& method, const std::string& fuzz) {
     "shapes": [{{"box": {{"low": [-10, -10, -6], "high": [10, 10, 0]}}, "medium": "m"}}],
     "lights": [{{"type": "directional", "direction": [-0.9, 0, -0.4], "irradiance": 3}}],
     "camera": {{"position": [0, 0, 100], "look_at": [0, 0, 0], "field_of_view": 11}},
-    "settings": {{"bounces": 0, "samples": 3000, "cell_size": 3, "entry_samples": 64, "method": "{}"}},
+    "settings": {{"bounces": 0, "samples": 1200, "cell_size": 4, "entry_samples": 32, "method": "{}"}},
     "film": {{"pixel_type": "float", "resolution": [16, 16]}}}})",
       fuzz, method);
 }
@@ -111,7 +111,7 @@ std::string ball_scene(const std::string& surface, const std::string& media = ""
                        const std::string& method = "lambert") {
   return R"({)" + media + R"("shapes": [{"sphere": {"radius": 10}, )" + surface + R"(}], "surroundings": 1,
     "camera": {"position": [0, 0, 60], "field_of_view": 20}, "film": {"resolution": [24, 24], "pixel_type": "float"},
-    "settings": {"light_samples": 256, "samples": 4000, "method": ")" +
+    "settings": {"light_samples": 256, "samples": 1500, "method": ")" +
          method + R"("}})";
 }
 
