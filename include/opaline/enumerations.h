@@ -146,6 +146,13 @@ constexpr NameList names_of(TextureMix) {
   return kTextureMixNames;
 }
 
+/// Combination of a detail with the colour below: a factor, relative to its mean, or an overlay.
+enum class DetailBlend { relative, overlay };
+inline constexpr std::array<std::string_view, 2> kDetailBlendNames{"relative", "overlay"};
+constexpr NameList names_of(DetailBlend) {
+  return kDetailBlendNames;
+}
+
 enum class EntryStrategy { disc_axes, chords };
 inline constexpr std::array<std::string_view, 2> kEntryStrategyNames{"disc_axes", "chords"};
 constexpr NameList names_of(EntryStrategy) {

@@ -81,8 +81,8 @@ struct Texture {
   bool is_relative = false;  ///< scaled to a mean of 1: its texels may exceed 1, unlike other colours
   /// ThreeWavelengths::from_rgb, applied to its colours before `scale`; none: red, green and blue.
   std::optional<std::array<Rgb, 3>> from_rgb{};
-  /// Colours multiply its own, over their mean; normals turn its own further.
-  std::vector<Texture> details{};
+  std::vector<Texture> details{};  ///< by their blends; those of a normal map turn its normals further
+  DetailBlend blend = DetailBlend::relative;  ///< as a detail
   SourcePlace place{};
   friend bool operator==(const Texture&, const Texture&) = default;
 };
@@ -105,6 +105,7 @@ struct Fuzz {
   double weight = 0;      ///< fraction of the surface with fibres, [0, 1]
   Rgb color{1, 1, 1};     ///< albedo of the fibres
   double roughness = .5;  ///< [0, 1]; below .25, all along the normal, as .25
+  std::optional<Texture> weight_texture{}, color_texture{}, roughness_texture{};
   friend bool operator==(const Fuzz&, const Fuzz&) = default;
 };
 
@@ -182,6 +183,14 @@ struct Medium {
 /// Part of a surface with a value that may be a texture.
 enum class SurfacePart { color, boundary, normals };
 
+template <class Visit>
+void for_each_textured(const Fuzz& fuzz, const Visit& visit) {
+  if (!(fuzz.weight > 0)) return;
+  visit(fuzz.weight, fuzz.weight_texture, SurfacePart::color);
+  visit(fuzz.color, fuzz.color_texture, SurfacePart::color);
+  visit(fuzz.roughness, fuzz.roughness_texture, SurfacePart::color);
+}
+
 /// Calls visit(value, texture, part) for each value of a medium that may be a texture; 1 for a texture alone.
 template <class Visit>
 void for_each_textured(const Medium& medium, const Visit& visit) {
@@ -192,6 +201,7 @@ void for_each_textured(const Medium& medium, const Visit& visit) {
   visit(medium.base_color, medium.base_texture, SurfacePart::color);
   for (const MediumLayer& layer : medium.layers)
     visit(layer.thickness, layer.thickness_texture, SurfacePart::color);
+  for_each_textured(medium.fuzz, visit);
 }
 
 // ---- shapes ---------------------------------------------------------------------------------------------
@@ -299,6 +309,7 @@ void for_each_textured(const Shape& shape, const Visit& visit) {
   visit(shape.reflectance, shape.reflectance_texture, SurfacePart::color);
   visit(1.0, shape.normal_map, SurfacePart::normals);
   visit(1.0, shape.bump_map, SurfacePart::normals);
+  for_each_textured(shape.fuzz, visit);
   if (!shape.gloss) return;
   visit(shape.gloss->metalness, shape.gloss->metalness_texture, SurfacePart::color);
   visit(shape.gloss->roughness, shape.gloss->roughness_texture, SurfacePart::boundary);

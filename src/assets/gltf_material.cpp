@@ -16,6 +16,7 @@
 #include "asset_files/gltf_uv_set.h"
 #include "assets/gltf_ranges.h"
 #include "assets/gltf_texture.h"
+#include "image/texture_file.h"
 
 namespace opaline {
 namespace {
@@ -184,6 +185,8 @@ class MaterialTranslator {
     return *std::move(texture);
   }
 
+  static constexpr std::array<const char*, 3> kChannels{"r", "g", "b"};
+
   /// The channel of a number's texture: roughness is green, metalness blue.
   static std::optional<Json> channel(std::optional<Json> texture, const char* name) {
     if (texture) (*texture)["channel"] = name;
@@ -229,19 +232,40 @@ class MaterialTranslator {
     return mean;
   }
 
-  /// The sheen's colour is the fibres' albedo, with its largest channel as the weight. Its lobe (Estevez & Kulla
-  /// 2017) has another shape.
+  /// The sheen's colour is the fibres' albedo, with its largest channel as the weight. A texture of it varies the
+  /// weight; the fibres have its mean hue. Its lobe (Estevez & Kulla 2017) has another shape.
   void add_fuzz(Json& keys) {
-    const GltfRecord sheen = values("KHR_materials_sheen");
-    const Vec3d color = color_of(sheen, "sheenColorFactor", Vec3d(0));
-    const double weight = max_component(color), roughness = sheen.number("sheenRoughnessFactor", 0);
-    if (!(weight > 0)) return;
-    keys["fuzz_weight"] = weight;
-    keys["fuzz_color"] = triple_json(color * (1 / weight));
-    keys["fuzz_roughness"] = roughness;
-    translated(fmt::format(
-        "sheenColorFactor {}, sheenRoughnessFactor {:.3g} -> fuzz_weight {:.3g}, fuzz_color, fuzz_roughness",
-        short_triple(color), roughness, weight));
+    constexpr const char* kSheen = "KHR_materials_sheen";
+    const GltfRecord sheen = values(kSheen);
+    const Vec3d factor = color_of(sheen, "sheenColorFactor", Vec3d(0));
+    if (!(max_component(factor) > 0)) return;
+    Vec3d color = factor;
+    std::optional<Json> weights = extension_texture(kSheen, "sheenColorTexture");
+    if (weights) color = color * mean_color(*scene_.textures.back());
+    std::size_t brightest = 0;
+    for (std::size_t c = 1; c < 3; ++c)
+      if (color[c] > color[brightest]) brightest = c;
+    const double most = color[brightest], weight = factor[brightest];
+    if (!(most > 0)) return;
+    if (weights) {
+      (*weights)["color_space"] = "srgb";
+      const bool is_grey = !scene_.textures.back()->has_channel(brightest);
+      weights = channel(std::move(weights), is_grey ? "r" : kChannels[brightest]);
+    }
+    const double roughness = sheen.number("sheenRoughnessFactor", 0);
+    keys["fuzz_weight"] = times(std::move(weights), weight, 1.0);
+    keys["fuzz_color"] = triple_json(color * (1 / most));
+    keys["fuzz_roughness"] =
+        times(channel(extension_texture(kSheen, "sheenRoughnessTexture"), "a"), roughness, 1.0);
+    translated(
+        fmt::format("sheenColorFactor {}, sheenRoughnessFactor {:.3g} -> fuzz_weight {:.3g}, fuzz_color {}, "
+                    "fuzz_roughness",
+                    short_triple(factor), roughness, weight, short_triple(color * (1 / most))));
+  }
+
+  static Vec3d mean_color(const TextureFile& texture) {
+    const Texel mean = texture.mean();
+    return component_max({mean[0], mean[1], mean[2]}, Vec3d(0));
   }
 
   void add_specular_weight(Json& keys) {

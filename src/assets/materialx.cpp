@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constants and bumps of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body
+// Constants, bumps and fuzz of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body
 // by its diffuse colour and mean free paths, like the artist's medium of a scene file, so no inversion is
 // necessary.
 #include <fmt/format.h>
@@ -92,23 +92,49 @@ class SurfaceReader {
     const pugi::xml_node normal = input(model_.normal);
     if (!normal) return;
     const HeightMap heights = height_map(normal);
-    if (heights.file.empty()) {
-      scene_.not_carried.push_back(fmt::format("{}: {}: {}", label_, model_.normal, heights.problem));
-      return;
+    std::optional<Json> map = texture(heights.image, model_.normal);
+    if (!map) return;
+    (*map)["scale"] = heights.scale;
+    keys["bump_map"] = *std::move(map);
+    scene_.translated.push_back(fmt::format("{}: bump of {} -> bump_map, white {:.4g} mm high", label_,
+                                            heights.image.file, heights.scale * scene_.mm_per_unit));
+  }
+
+  /// Texture of a scene file; none: reported as not carried over.
+  std::optional<Json> texture(const ImageNode& image, const char* name) {
+    if (image.file.empty()) {
+      scene_.not_carried.push_back(fmt::format("{}: {}: {}", label_, name, image.problem));
+      return {};
     }
-    const NamedFile named = find_named_file(heights.file, file_, std::filesystem::path(file_).parent_path());
+    const NamedFile named = find_named_file(image.file, file_, std::filesystem::path(file_).parent_path());
     if (!named.warning.empty()) scene_.warn(file_, label_ + ": " + named.warning);
     // A missing file is reported on reading the scene.
     const std::filesystem::path file =
-        named.path.empty() ? std::filesystem::path(file_).parent_path() / heights.file : named.path;
-    Json& map = keys["bump_map"] = {{"texture", scene_name_of(file, asset_.path, asset_.mesh_path)},
-                                    {"scale", heights.scale}};
-    if (heights.tiling != std::array<double, 2>{1, 1}) {
-      map["uv_scale"] = heights.tiling;
-      map["uv_offset"] = {0, 1 - heights.tiling[1]};  // tile rows start at the lower edge
+        named.path.empty() ? std::filesystem::path(file_).parent_path() / image.file : named.path;
+    Json map = {{"texture", scene_name_of(file, asset_.path, asset_.mesh_path)}};
+    if (image.tiling != std::array<double, 2>{1, 1}) {
+      map["uv_scale"] = image.tiling;
+      map["uv_offset"] = {0, 1 - image.tiling[1]};  // tile rows start at the lower edge
     }
-    scene_.translated.push_back(fmt::format("{}: bump of {} -> bump_map, white {:.4g} mm high", label_,
-                                            heights.file, heights.scale * scene_.mm_per_unit));
+    return map;
+  }
+
+  /// Texture connected to an input; none: it has a value, or is reported as not carried over.
+  std::optional<Json> connected_texture(const char* name, bool is_color) {
+    const pugi::xml_node found = input(name);
+    if (!found || found.attribute("value")) return {};
+    const ImageNode image = connected_image(found);
+    std::optional<Json> map = texture(image, name);
+    if (!map) return {};
+    if (image.color_space == "srgb_texture")
+      (*map)["color_space"] = "srgb";
+    else if (image.color_space == "lin_rec709" && is_color)
+      (*map)["color_space"] = "linear";
+    else if (is_color && !image.color_space.empty())
+      scene_.not_carried.push_back(label_ + ": the colour space " + in_quotes(image.color_space) + " of " +
+                                   name);
+    scene_.translated.push_back(fmt::format("{}: {} -> {}", label_, name, image.file));
+    return map;
   }
 
   /// Adds anisotropy in OpenPBR's parametrization, the scene's own. Standard Surface divides and multiplies
@@ -130,13 +156,17 @@ class SurfaceReader {
   }
 
   void add_fuzz(Json& keys) {
-    const double weight = number(model_.fuzz, 0, 0, 1),
-                 roughness = number(model_.fuzz_roughness, model_.default_fuzz_roughness, 0, 1);
-    const Vec3d fibres = color(model_.fuzz_color, Vec3d(1));
+    const std::optional<Json> weights = connected_texture(model_.fuzz, false),
+                              colors = connected_texture(model_.fuzz_color, true),
+                              roughnesses = connected_texture(model_.fuzz_roughness, false);
+    const double weight = weights ? 1 : number(model_.fuzz, 0, 0, 1),
+                 roughness =
+                     roughnesses ? 1 : number(model_.fuzz_roughness, model_.default_fuzz_roughness, 0, 1);
+    const Vec3d fibres = colors ? Vec3d(1) : color(model_.fuzz_color, Vec3d(1));
     if (!(weight > 0)) return;
-    keys["fuzz_weight"] = weight;
-    keys["fuzz_color"] = triple_json(fibres);
-    keys["fuzz_roughness"] = roughness;
+    keys["fuzz_weight"] = weights.value_or(weight);
+    keys["fuzz_color"] = colors.value_or(triple_json(fibres));
+    keys["fuzz_roughness"] = roughnesses.value_or(roughness);
     scene_.translated.push_back(
         fmt::format("{}: {} {:.3g}, {} {} -> fuzz_weight, fuzz_color, fuzz_roughness {:.3g}", label_,
                     model_.fuzz, weight, model_.fuzz_color, short_triple(fibres), roughness));

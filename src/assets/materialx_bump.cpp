@@ -49,32 +49,40 @@ std::string file_of(const Node& image) {
   return file.empty() ? file : prefix + file;
 }
 
-HeightMap none(std::string problem) {
-  return {{}, 1, {1, 1}, std::move(problem)};
+ImageNode none(std::string problem) {
+  return {{}, {1, 1}, {}, std::move(problem)};
 }
 
 }  // namespace
 
-HeightMap height_map(const pugi::xml_node& normal) {
-  const Node bump = source_of(normal);
-  if (bump.name() != std::string_view("bump")) return none("it is connected to no bump node");
-  const Node image = source_of(input_of(bump, "height"));
+ImageNode connected_image(const pugi::xml_node& input) {
+  const Node image = source_of(input);
   const bool is_tiled = image.name() == std::string_view("tiledimage");
-  if (!is_tiled && image.name() != std::string_view("image")) return none("its heights are not an image");
-  if (source_of(input_of(bump, "normal"))) return none("its bump perturbs another normal");
+  if (!is_tiled && image.name() != std::string_view("image")) return none("it is connected to no image");
   const Node coordinates = source_of(input_of(image, "texcoord"));
   if (coordinates && coordinates.name() != std::string_view("texcoord"))
     return none("its image uses coordinates other than the UVs of the mesh");
-  HeightMap map{.file = file_of(image), .problem = "its image has no file"};
-  std::array<double, 1> scale{1};
-  if (const Node given = input_of(bump, "scale"); given && !(read_numbers(given, scale) && scale[0] >= 0))
-    return none("the scale of its bump is not a number of at least 0");
-  map.scale = scale[0];
+  ImageNode map{.file = file_of(image), .problem = "its image has no file"};
+  for (Node at = input_of(image, "file"); at && map.color_space.empty(); at = at.parent())
+    map.color_space = at.attribute("colorspace").value();
   for (const char* other : {"uvoffset", "realworldimagesize", "realworldtilesize"})
     if (is_tiled && input_of(image, other)) return none(std::string("its image has a ") + other);
   if (const Node given = input_of(image, "uvtiling"); is_tiled && given && !read_numbers(given, map.tiling))
     return none("the tiling of its image is not a pair of numbers");
   return map;
+}
+
+HeightMap height_map(const pugi::xml_node& normal) {
+  const Node bump = source_of(normal);
+  if (bump.name() != std::string_view("bump")) return {none("it is connected to no bump node")};
+  const Node heights = source_of(input_of(bump, "height"));
+  if (heights.name() != std::string_view("tiledimage") && heights.name() != std::string_view("image"))
+    return {none("its heights are not an image")};
+  if (source_of(input_of(bump, "normal"))) return {none("its bump perturbs another normal")};
+  std::array<double, 1> scale{1};
+  if (const Node given = input_of(bump, "scale"); given && !(read_numbers(given, scale) && scale[0] >= 0))
+    return {none("the scale of its bump is not a number of at least 0")};
+  return {connected_image(input_of(bump, "height")), scale[0]};
 }
 
 }  // namespace opaline

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bumps of MaterialX surfaces.
+// Images of MaterialX surfaces.
 #pragma once
 
 #include <array>
@@ -8,12 +8,21 @@
 
 namespace opaline {
 
+/// An `image` or `tiledimage` node.
+struct ImageNode {
+  std::string file;  ///< as in the document, relative to its folder; empty: none
+  std::array<double, 2> tiling{1, 1};
+  std::string color_space{};  ///< as in the document
+  std::string problem;        ///< reason for an empty file
+};
+
+/// Image connected to an input, directly or through a graph.
+ImageNode connected_image(const pugi::xml_node& input);
+
 /// Height map of a `bump` node.
 struct HeightMap {
-  std::string file;  ///< as in the document, relative to its folder; empty: none
+  ImageNode image;
   double scale = 1;  ///< the height of white, scene units
-  std::array<double, 2> tiling{1, 1};
-  std::string problem;  ///< reason for an empty file
 };
 
 /// Height map of the bump node connected to a surface's normal, from an image or a tiledimage.

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "bodies/surface_boundaries.h"
 #include "core/random.h"
 #include "lights/light.h"
 #include "lights/light_tree.h"
+#include "scene/scene_properties.h"
 #include "volume/cut_outer_surface.h"
 
 namespace opaline {
@@ -29,9 +31,18 @@ std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::si
                                            std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
   const BodyPlan& plan = input.plan.groups[group];
-  return compute_irradiance({input.rays, samples, lights, boundary_of(input.scene.media[plan.medium]),
-                             settings.light_samples, hash_bits(settings.seed, group + 1000), input.monitor,
-                             plan.cell > 0});
+  IrradianceInput traced{input.rays,
+                         samples,
+                         lights,
+                         boundaries_of(input.scene, input.world)[plan.meshes.front()],
+                         settings.light_samples,
+                         hash_bits(settings.seed, group + 1000),
+                         input.monitor,
+                         plan.cell > 0};
+  if (!has_maps(input.scene, plan.meshes)) return compute_irradiance(traced);
+  const SurfaceTextures textures(input.scene, input.world);
+  traced.bend = [&](SurfacePoint& point) { return textures.bend(point); };
+  return compute_irradiance(traced);
 }
 
 std::vector<Light> recentred_lights(const Scene& scene, const World& world) {

@@ -42,6 +42,24 @@ std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Pl
   return texture.source->image()->at(texture_place(texture, *place.uv, place.footprint, place.on_whole_face));
 }
 
+// 8-bit images have no exact half: the values 127 and 128 on both sides of it count as one half.
+constexpr float kRoundingOfHalf = 1.01f / 255;
+
+/// Colour under a detail; a detail of one half has no effect. Continuous and monotone in both, unlike the plain overlay,
+/// which has another slope on both sides of one half.
+RgbF overlaid(const RgbF& color, const RgbF& detail) {
+  RgbF result = color;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float s = std::min(color[c], 1.0f), d = detail[c];
+    if (std::abs(2 * d - 1) < kRoundingOfHalf) continue;
+    const float linear = 2 * s * d, twice = 2 * s - 1;
+    result[c] = s < .5f   ? linear
+                : d < .5f ? linear + (s - linear) * twice * twice
+                          : 1 - 2 * (1 - s) * (1 - d);
+  }
+  return result;
+}
+
 RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
   std::array<float, 4> texel = looked_up(texture, place);
   if (texture.from_rgb) {
@@ -49,15 +67,19 @@ RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
     for (std::size_t c = 0; c < 3; ++c) texel[c] = float(mixed[c]);
   }
   RgbF color;
-  for (std::size_t c = 0; c < 3; ++c) color[c] = std::max(0.0f, texel[c]) * float(texture.scale[c]);
-  for (const Texture& detail : texture.details) color = color * color_of(detail, place);
+  for (std::size_t c = 0; c < 3; ++c) color[c] = std::max(0.0f, texel[c]);
+  for (const Texture& detail : texture.details)
+    if (detail.blend == DetailBlend::overlay) color = overlaid(color, color_of(detail, place));
+  color = color * RgbF(texture.scale);
+  for (const Texture& detail : texture.details)
+    if (detail.blend == DetailBlend::relative) color = color * color_of(detail, place);
   return texture.is_relative ? color : component_min(color, RgbF(1));
 }
 
-// 8-bit normal maps have no exact zero: the values 127 and 128 on both sides of it count as zero.
+// Zero at one half.
 float slope_of(float value) {
   const float slope = 2 * value - 1;
-  return std::abs(slope) < 1.01f / 255 ? 0 : slope;
+  return std::abs(slope) < kRoundingOfHalf ? 0 : slope;
 }
 
 /// error if a tile of the texture is missing at the centroid of a triangle
@@ -168,15 +190,6 @@ bool follows_textures_of(const Scene& scene, const World& world, std::size_t sha
   return follows_textures_inside(scene.settings.method, is_closed);
 }
 
-/// UVs of meshes, or the space of textures without them.
-void add_spaces(KeyBuilder& key, const Scene& scene, const World& world,
-                std::span<const std::uint32_t> meshes) {
-  for (const std::uint32_t m : meshes) {
-    key.add_array(std::span(world.meshes[m].uvs));
-    add_solid_space(key, scene, m);
-  }
-}
-
 }  // namespace
 
 SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world)
@@ -281,6 +294,11 @@ std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Pl
   return std::clamp(looked_up(*texture, place)[texture->channel] * float(texture->scale.x), 0.0f, 1.0f);
 }
 
+std::optional<RgbF> color_at(const Texture* texture, const SurfaceTextures::Place& place) {
+  if (texture == nullptr) return {};
+  return color_of(*texture, place);
+}
+
 Vec3f SurfaceTextures::tangent(const Place& place, const SurfacePoint& point) const {
   const Grain* const grain = of_mesh_[place.mesh].grain;
   if (grain == nullptr) return {};
@@ -303,6 +321,15 @@ float SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
               along = rise - point.normal * dot(rise, point.normal);
   if (along != Vec3f{}) point.normal = normalized(point.normal - along * outward(place));
   return variance;
+}
+
+float SurfaceTextures::bend(SurfacePoint& point) const {
+  const OfMesh& own = of_mesh_[point.mesh];
+  if (own.normals == nullptr && own.heights == nullptr) return 1;
+  constexpr float kLeastCosine = .1f;
+  const Vec3f before = point.normal;
+  bend(place(point.mesh, point.triangle, point.u, point.v, footprint_of(point)), point);
+  return 1 / std::sqrt(std::max(kLeastCosine, dot(point.normal, before)));
 }
 
 bool uses_vertex_colors(const Scene& scene, const Shape& shape, const Mesh& mesh) {
@@ -344,7 +371,8 @@ void add_to_key(KeyBuilder& key, const Texture& texture) {
     for (const Rgb& row : *texture.from_rgb) key.add(row);
   key.add(texture.uv_offset).add(texture.uv_scale).add(texture.uv_rotation);
   if (texture.triplanar_width > 0) key.add(std::string("triplanar")).add(texture.triplanar_width);
-  for (const Texture& detail : texture.details) add_to_key(key.add(std::string("detail")), detail);
+  for (const Texture& detail : texture.details)
+    add_to_key(key.add(std::string(detail.blend == DetailBlend::overlay ? "overlay" : "detail")), detail);
 }
 
 void add_solid_space(KeyBuilder& key, const Scene& scene, std::size_t shape) {
@@ -352,6 +380,14 @@ void add_solid_space(KeyBuilder& key, const Scene& scene, std::size_t shape) {
   if (std::ranges::none_of(textures_of(scene, scene.shapes[shape]), solid)) return;
   const Transform& space = scene.shapes[shape].to_world;
   key.add(std::string("space")).add(space.x).add(space.y).add(space.z).add(space.translation);
+}
+
+void add_spaces(KeyBuilder& key, const Scene& scene, const World& world,
+                std::span<const std::uint32_t> meshes) {
+  for (const std::uint32_t m : meshes) {
+    key.add_array(std::span(world.meshes[m].uvs));
+    add_solid_space(key, scene, m);
+  }
 }
 
 void add_vertex_colors(KeyBuilder& key, const Scene& scene, const Mesh& mesh) {
@@ -404,6 +440,15 @@ StageKey medium_key(const Scene& scene, const World& world, std::span<const std:
   if (medium.radius_texture) add_to_key(key.add(std::string("radius")), *medium.radius_texture);
   add_spaces(key, scene, world, meshes);
   return key.key();
+}
+
+Footprint footprint_of(const SurfacePoint& point) {
+  Footprint footprint;
+  if (!(point.width > 0)) return footprint;
+  tangent_frame(point.geometric, footprint.x, footprint.y);
+  footprint.x *= point.width;
+  footprint.y *= point.width;
+  return footprint;
 }
 
 Footprint footprint_of(const SurfacePoint& point, const Vec3f& direction, float width) {

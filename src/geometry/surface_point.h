@@ -16,6 +16,7 @@ struct SurfacePoint {
   float offset = 0;  ///< RayScene::offset here, for rays from the point; 0: the largest mesh's
   std::uint32_t mesh = kNoMesh, triangle = 0;
   float u = 0, v = 0;  ///< barycentrics of the second and third corner
+  float width = 0;     ///< filter width for textures; 0: unfiltered
 
   static constexpr std::uint32_t kNoMesh = ~0u;  ///< not on a triangle
 };

@@ -27,12 +27,13 @@ MediumRow textured(KeyInfo info) {
 
 std::vector<KeyInfo> fuzz_rows(std::string_view section) {
   using enum ValueType;
-  return {row(section, "fuzz_weight", number, "", kUnitInterval, "0",
-              "fraction of the surface with fibres, as in OpenPBR: peach fuzz, velvet, dust"),
-          row(section, "fuzz_color", color, "", kUnitInterval, "1", "albedo of the fibres"),
-          row(section, "fuzz_roughness", number, "", kUnitInterval, "0.5",
-              "1: fibres in all directions; towards 0: along the normal, with light at grazing angles only; "
-              "below 0.25 as 0.25")};
+  return {
+      textured(row(section, "fuzz_weight", number, "", kUnitInterval, "0",
+                   "fraction of the surface with fibres, as in OpenPBR: peach fuzz, velvet, dust")),
+      textured(row(section, "fuzz_color", color, "", kUnitInterval, "1", "albedo of the fibres")),
+      textured(row(section, "fuzz_roughness", number, "", kUnitInterval, "0.5",
+                   "1: fibres in all directions; towards 0: along the normal, with light at grazing angles "
+                   "only; below 0.25 as 0.25"))};
 }
 
 std::span<const MediumRow> medium_rows() {

@@ -147,9 +147,9 @@ Fuzz read_fuzz(const ObjectReader& reader) {
              roughness = reader.find("fuzz_roughness");
   for (const auto& key : {color, roughness})
     if (key && !weight) key->fail_key("has no effect without fibres", "'fuzz_weight' with it");
-  if (weight) fuzz.weight = weight->number();
-  if (color) fuzz.color = color->color();
-  if (roughness) fuzz.roughness = roughness->number();
+  if (weight) read_textured(*weight, fuzz.weight, fuzz.weight_texture);
+  if (color) read_textured(*color, fuzz.color, fuzz.color_texture);
+  if (roughness) read_textured(*roughness, fuzz.roughness, fuzz.roughness_texture);
   return fuzz;
 }
 

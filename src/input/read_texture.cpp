@@ -23,11 +23,18 @@ bool is_texture(const Value& value) {
 /// Channels of a texel used by a value.
 enum class TexturePart { color, triple, number };
 
+DetailBlend blend_of(const ObjectReader& reader) {
+  const auto blend = reader.find("blend");
+  return blend ? static_cast<DetailBlend>(blend->choice()) : DetailBlend::relative;
+}
+
 ColorSpace space_of(const ObjectReader& reader, const std::string& path, TexturePart part) {
   ColorSpace space = ColorSpace::automatic;
   if (const auto declared = reader.find("color_space")) space = static_cast<ColorSpace>(declared->choice());
   if (space != ColorSpace::automatic) return space;
-  return part == TexturePart::color ? TextureFile::space_of_colors(path) : ColorSpace::linear;
+  return part == TexturePart::color && blend_of(reader) != DetailBlend::overlay
+             ? TextureFile::space_of_colors(path)
+             : ColorSpace::linear;
 }
 
 /// error unless the image has the channels; a missing alpha is 1
@@ -102,17 +109,17 @@ void check_keys(const ObjectReader& reader, bool is_image) {
     refuse({"uv_scale", "uv_rotation", "uv_offset"}, is_image ? "with 'triplanar'" : "with 'noise'");
 }
 
-Texture read_texture(const Value& value, TexturePart part);
+Texture read_texture(const Value& value, TexturePart part, bool is_detail = false);
 
-/// Colours are normalised by their mean; constant ones have no effect.
+/// Relative colours are normalised by their mean; constant ones have no effect.
 void read_details(const Value& details, const Value& owner, TexturePart part, Texture& texture) {
   const bool is_normal = part == TexturePart::triple && owner.info().type == ValueType::object;
   if (part != TexturePart::color && !is_normal)
     details.fail_key("applies to colours and normal maps", "a texture without it");
   for (const Value& one : details.list()) {
-    Texture detail = read_texture(one, part);
+    Texture detail = read_texture(one, part, true);
     if (!detail.details.empty()) one.fail("has details of its own", "a list of one level");
-    if (!is_normal) {
+    if (!is_normal && detail.blend == DetailBlend::relative) {
       if (detail.source->constant()) continue;
       take_mean(detail);
     }
@@ -120,10 +127,13 @@ void read_details(const Value& details, const Value& owner, TexturePart part, Te
   }
 }
 
-Texture read_texture(const Value& value, TexturePart part) {
+Texture read_texture(const Value& value, TexturePart part, bool is_detail) {
   const ObjectReader reader(value, "texture");
   Texture texture;
   texture.place = value.place();
+  if (const auto blend = reader.find("blend"); blend && !(is_detail && part == TexturePart::color))
+    blend->fail_key("applies to a detail of a colour", "a texture without it");
+  texture.blend = blend_of(reader);
   const Value origin = reader.need(reader.exactly_one_of(kOrigins));
   const bool is_image = origin.node().key == kOrigins[0];
   texture.source = is_image ? read_image(reader, origin, part) : read_noise(reader, origin);

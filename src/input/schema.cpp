@@ -271,8 +271,15 @@ std::vector<KeyInfo> texture_rows() {
       row("texture", "uv_offset", list, "", kFiniteNumber, "[0, 0]",
           "moves the UVs right and down, after `uv_rotation`"),
       row("texture", "detail", list, "", kFiniteNumber, "none",
-          "colours and normal maps: textures of finer detail, such as pores. A colour is multiplied by each "
-          "texel over the mean of its texture; normals are tilted further"),
+          "colours and normal maps: textures of finer detail, such as pores. Colours are combined by "
+          "`blend`; "
+          "normals are tilted further"),
+      row("texture", "blend", choice, "", kFiniteNumber, "`\"relative\"`",
+          "in the `detail` of a colour: `\"relative\"`: each texel over the mean of its texture is a factor; "
+          "`\"overlay\"`: texels above 0.5 brighten, those below darken, which changes the mean. Overlays "
+          "are "
+          "linear by default and precede `scale`",
+          kDetailBlendNames),
   };
 }
 

@@ -77,16 +77,20 @@ void trace_transfers(const IrradianceInput& input, std::span<const Light> lights
                       light_seed(input.seed, lights[0]));
     batch.sort_rays();
     batch.reserve(end - begin);
+    std::vector<float> factors;
     for (std::size_t i = begin; i < end; ++i) {
       const SurfaceSample& s = input.samples[i];
-      batch.add(entered_at(input, input.rays.surface_point(s.mesh, s.triangle, s.u, s.v)), i);
+      SurfacePoint point = input.rays.surface_point(s.mesh, s.triangle, s.u, s.v);
+      point.width = std::sqrt(s.area);
+      factors.push_back(enter_at(input, point));
+      batch.add(point, i);
     }
     const Halves halves(batch.samples());
     std::vector<std::vector<std::array<double, 2>>> sums(lights.size(),
                                                          std::vector<std::array<double, 2>>(end - begin));
     batch.trace_lights([&](std::size_t l, std::size_t p, int s, float e, float free) {
-      sums[l][p][halves.of(s)] += double(e);
-      unblocked[l][begin + p] += free;
+      sums[l][p][halves.of(s)] += double(e * factors[p]);
+      unblocked[l][begin + p] += free * factors[p];
     });
     for (std::size_t l = 0; l < lights.size(); ++l)
       for (std::size_t p = 0; p < end - begin; ++p) {

@@ -27,6 +27,9 @@ struct IrradianceInput {
   /// Uses the triangles' normals for cosines and Ft, conserving the incident flux. Interpolated normals
   /// change it where the surface bends within few triangles.
   bool geometric_normals = false;
+  /// Turns the normal of a point by the maps of its surface, averaged over its width, and returns a factor of the light
+  /// entering. Empty: no maps.
+  std::function<float(SurfacePoint&)> bend = {};
 };
 
 /// E(x) = integral of L_i Ft(omega_i) cos d omega is linear in each light's colour, and Ft is equal for all

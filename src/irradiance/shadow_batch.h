@@ -44,6 +44,7 @@ class ShadowBatch {
       : rays_(rays),
         lights_(lights),
         boundary_(boundary),
+        boundary_here_(boundary),
         samples_(is_delta(lights[0]) ? 1 : samples),
         seed_(seed),
         many_(std::get_if<ManyLights>(&lights[0].source)),
@@ -75,6 +76,7 @@ class ShadowBatch {
            const Lobe* lobe = nullptr) {
     tilt_.reset();
     lift_.reset();
+    if (boundary_.is_textured()) boundary_here_ = boundary_.at(point);
     std::array<double, 2> shift{};
     if (!is_delta(lights_[0]))
       shift = {unit_double(hash_bits(seed_, 2 * index)), unit_double(hash_bits(seed_, 2 * index + 1))};
@@ -150,7 +152,7 @@ class ShadowBatch {
     const float cosine = dot(point.normal, sample.direction), height = dot(point.geometric, sample.direction);
     const bool is_lifted = cosine > 0 && height < kGrazing && is_lifted_at(point, height);
     const bool is_above = cosine > 0 && (height > 0 || is_lifted);
-    const float transmitted = is_above ? boundary_.transmittance(std::min(cosine, 1.0f)) : 1.0f;
+    const float transmitted = is_above ? boundary_here_.transmittance(std::min(cosine, 1.0f)) : 1.0f;
     bool is_carried = false;
     for (std::size_t l = 0; l < lights_.size(); ++l) {
       carried_.push_back(is_above && weights[l] > 0 ? weights[l] * cosine * transmitted : 0);
@@ -402,7 +404,7 @@ class ShadowBatch {
 
   const RayScene& rays_;
   std::span<const Light> lights_;
-  OuterBoundary boundary_;
+  OuterBoundary boundary_, boundary_here_;  // the latter at the last point
   int samples_;
   std::uint64_t seed_;
   const ManyLights* many_;               // null: a single light

@@ -137,15 +137,16 @@ void average(const IrradianceInput& input, std::uint32_t light, std::span<const 
   for (std::size_t begin = 0; begin < marks.size(); begin += batch_size) {
     const std::span<const Mark> part = marks.subspan(begin, std::min(batch_size, marks.size() - begin));
     std::vector<std::uint32_t> owners;  // owners of the points in the batch
-    std::vector<float> areas;           // areas of the same points
+    std::vector<float> areas;           // areas of the same points, times their factors
     std::vector<double> sums(part.size()), whole(part.size());
     for (std::uint32_t m = 0; m < part.size(); ++m)
       for (const CellPoints::Point& point : points.points(part[m].cell)) {
         if (point.line >= most) break;
-        batch.add(entered_at(input, point.at), part[m].sample,
-                  std::uint64_t(point.line) * std::uint64_t(each));
+        SurfacePoint at = point.at;
+        const float factor = enter_at(input, at);
+        batch.add(at, part[m].sample, std::uint64_t(point.line) * std::uint64_t(each));
         owners.push_back(m);
-        areas.push_back(point.weight);
+        areas.push_back(point.weight * factor);
         whole[m] += double(point.weight);
       }
     batch.trace([&](std::size_t p, int, float e, float) { sums[owners[p]] += double(areas[p]) * double(e); });

@@ -9,10 +9,10 @@
 
 namespace opaline {
 
-/// The point with the normal used for transmission.
-inline SurfacePoint entered_at(const IrradianceInput& input, SurfacePoint point) {
+/// Gives the point the normal used for transmission; returns a factor of the light.
+inline float enter_at(const IrradianceInput& input, SurfacePoint& point) {
   if (input.geometric_normals) point.normal = point.geometric;
-  return point;
+  return input.bend ? input.bend(point) : 1;
 }
 
 /// Replaces, per light, the weight of each sample beside a shadow edge by its mean over points of the

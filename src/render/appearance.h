@@ -44,11 +44,14 @@ struct Appearance {
   std::shared_ptr<const AngularExit> exit = {};
   OuterBoundary boundary = {};
   RgbF fuzz_color{};  ///< albedo of the fibres
+  const Texture* fuzz_color_texture = nullptr;
 
-  /// Looks up the textures of numbers.
-  void look_up(const SurfaceTextures::Place& place, HitTextures& here) const {
+  /// Looks up the textures of numbers and of fuzz.
+  void look_up(const SurfaceTextures::Place& place, const SurfacePoint& point, HitTextures& here) const {
     here.roughness = number_at(roughness_texture, place);
     here.metalness = number_at(metalness_texture, place);
+    here.fuzz_color = color_at(fuzz_color_texture, place);
+    if (boundary.is_textured()) here.boundary = boundary.at(point);
   }
   /// Appearance at a point with known textures.
   Appearance at(const HitTextures& textures) const {
@@ -59,6 +62,8 @@ struct Appearance {
       here.rough = roughnesses->at(filtered_roughness(own, textures.slope_variance), textures.tangent_share);
     }
     if (textures.metalness) here.metalness = *textures.metalness;
+    if (textures.boundary) here.boundary = *textures.boundary;
+    if (textures.fuzz_color) here.fuzz_color = *textures.fuzz_color;
     return here;
   }
 
@@ -136,10 +141,15 @@ inline void roughen(Appearance& appearance, double roughness, const std::optiona
     appearance.rough.emplace(roughness, eta);
 }
 
-inline Appearance opaque_appearance(const Shape& shape) {
+inline void set_fuzz(Appearance& appearance, const Fuzz& fuzz, const OuterBoundary& boundary) {
+  appearance.boundary = boundary;
+  appearance.fuzz_color = RgbF(fuzz.color);
+  appearance.fuzz_color_texture = pointer_to(fuzz.color_texture);
+}
+
+inline Appearance opaque_appearance(const Shape& shape, const OuterBoundary& boundary) {
   Appearance appearance{.albedo = RgbF(shape.reflectance), .rough = {}};
-  appearance.boundary = boundary_of_opaque(shape);
-  appearance.fuzz_color = RgbF(shape.fuzz.color);
+  set_fuzz(appearance, shape.fuzz, boundary);
   if (!shape.gloss) return appearance;
   const Gloss& gloss = *shape.gloss;
   appearance.eta = float(gloss.eta);
@@ -154,14 +164,14 @@ inline Appearance opaque_appearance(const Shape& shape) {
 
 /// follows_light: true if the method traces light inside, and its radiance has the angular distribution of a
 /// half space
-inline Appearance mesh_appearance(const Scene& scene, const Shape& shape, bool follows_light) {
-  if (!shape.medium) return opaque_appearance(shape);
+inline Appearance mesh_appearance(const Scene& scene, const Shape& shape, const OuterBoundary& boundary,
+                                  bool follows_light) {
+  if (!shape.medium) return opaque_appearance(shape, boundary);
   const Medium& medium = scene.media[*shape.medium];
   const DiffuseProfile profile = make_diffuse_profile(medium);
   Appearance appearance{true, RgbF(profile.total), float(profile.eta), float(profile.average_reflectance), {},
                         true};
-  appearance.boundary = boundary_of(medium);
-  appearance.fuzz_color = RgbF(medium.fuzz.color);
+  set_fuzz(appearance, medium.fuzz, boundary);
   roughen(appearance, medium.specular_roughness, medium.roughness_texture, medium.grain, medium.eta,
           shape.normal_map.has_value());
   if (follows_light)

@@ -149,6 +149,11 @@ void BouncedPlaces::gather(const RenderInput& input, const Shader& shader, Latti
                           nearness[light.point] += 1 / (float(rays_each) * light.distance);
                         });
       for (std::size_t i = 0; i < hits.points.size(); ++i) {
+        if (boundary.is_textured()) {  // cached without the fuzz of the point
+          const float entering = boundary.at(hits.points[i]).past_fuzz();
+          irradiance[i] *= 1 / entering, further[i] *= 1 / entering;
+          squares[i] *= 1 / (entering * entering);
+        }
         const std::size_t k = begin + hits.rays[i], place = places[k];
         const auto spacing = float(lattice.step * pixel.at(double(rays[k].ray.far)));
         lattice.places.set(place, hits.points[i], boundary.number(), spacing);
@@ -216,7 +221,8 @@ std::optional<RgbF> BouncedPlaces::at(const SurfacePoint& point, const OuterBoun
   if (!(seen.depth > 0)) return {};
   for (std::size_t l = lattices_.size(); l-- > 0;) {
     if (l > 0 && !lattices_[l - 1].needs_closer_places(seen)) continue;
-    if (const std::optional<RgbF> known = lattices_[l].at(seen, point, boundary.number())) return known;
+    const std::optional<RgbF> known = lattices_[l].at(seen, point, boundary.number());
+    if (known) return boundary.is_textured() ? *known * boundary.at(point).past_fuzz() : *known;
   }
   return {};
 }
@@ -416,6 +422,7 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
           for (std::size_t i = begin; i < end; ++i) {
             const SurfaceSample& s = samples[i];
             points.push_back(input.rays.surface_point(s.mesh, s.triangle, s.u, s.v));
+            points.back().width = std::sqrt(s.area);
             keys.push_back(i);
           }
           for_each_gathered({input.rays, shader, points, keys, body.boundary, rays_each, seed,

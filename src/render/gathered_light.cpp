@@ -91,8 +91,11 @@ void use_all(const GatherInput& input, std::size_t begin, std::span<const Traced
   std::vector<RgbF> further(rays.size());
   const std::vector<RgbF> radiance = input.shader.radiance_along(rays, keys, held, further);
   const float each = float(std::numbers::pi) / float(input.rays_each);
+  OuterBoundary boundary = input.boundary;
   for (std::size_t r = 0; r < radiance.size(); ++r) {
-    const float transmitted = input.boundary.transmittance(met[r].cosine);
+    if (input.boundary.is_textured() && (r == 0 || met[r].point != met[r - 1].point))
+      boundary = input.boundary.at(input.points[begin + met[r].point]);
+    const float transmitted = boundary.transmittance(met[r].cosine);
     const Ray& ray = rays[r].ray;
     const float factor = each * transmitted;
     use({begin + met[r].point, ray.direction, ray.far, radiance[r] * factor, further[r] * factor});

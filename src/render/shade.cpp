@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "bodies/surface_boundaries.h"
 #include "core/random.h"
 #include "render/bounced_light.h"
 #include "render/camera_rays.h"
@@ -66,8 +67,9 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
     : input_(input),
       lights_(recentred_lights(input.scene, input.world)),
       textures_(input.scene, input.world),
-      ray_width_(camera_ray_width(input)),
-      fields_(make_fields(input, textures_, sources)) {
+      ray_width_(camera_ray_width(input)) {
+  const std::vector<OuterBoundary> outer = boundaries_of(input.scene, input.world);
+  fields_ = make_fields(input, textures_, outer, sources);
   if (input.view != nullptr) {
     std::vector<OuterBoundary> boundaries;
     for (const std::unique_ptr<Field>& field : fields_.all) boundaries.push_back(field->boundary());
@@ -97,7 +99,7 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
             : of_medium.end();
     appearances_.push_back(known != of_medium.end() && known->second < i
                                ? appearances_[known->second]
-                               : mesh_appearance(input.scene, shape, follows_light[i]));
+                               : mesh_appearance(input.scene, shape, outer[i], follows_light[i]));
   }
   light_samples_ = light_samples_of_ray(input.scene);
   if (input.view != nullptr && can_hold_coats())
@@ -284,15 +286,16 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
 void Shader::add_textures(const RayBatch& batch, std::size_t ray, bool from_behind, SurfacePoint& point,
                           SurfaceHits& hits) const {
   const auto& [traced, hit] = batch.rays[ray];
+  point.width = width_at(batch, ray);
   SurfaceTextures::Place place = textures_.place(hit.mesh, hit.triangle, hit.u, hit.v,
-                                                 footprint_of(point, traced.direction, width_at(batch, ray)));
+                                                 footprint_of(point, traced.direction, point.width));
   place.from_behind = from_behind;
   const Vec3f unbent = point.normal;
   const float slope_variance = textures_.bend(place, point);
   const bool is_bent = point.normal != unbent;
   if (is_bent) keep_mirrored_outside(point, traced.direction);
   HitTextures here{textures_.tint(place), textures_.reflected(place)};
-  appearances_[hit.mesh].look_up(place, here);
+  appearances_[hit.mesh].look_up(place, point, here);
   here.slope_variance = slope_variance;
   here.is_bent = is_bent;
   here.tangent = textures_.tangent(place, point);

@@ -15,12 +15,18 @@ void Shader::add_fuzz(const SurfaceHits& hits, const OuterBoundary& boundary, st
   std::vector<Vec3f> towards_eye;
   std::vector<float> cosines;
   std::vector<RgbF> colors;
+  std::vector<OuterBoundary> boundaries;  // with textures only
+  const auto boundary_at = [&](std::size_t i) -> const OuterBoundary& {
+    return boundaries.empty() ? boundary : boundaries[i];
+  };
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
     keys.push_back(batch.mirrors > 0 ? hits.keys[i] : key_in_pixel(hits.keys[i], samples_per_pixel));
     const Vec3f& direction = batch.rays[hits.rays[i]].ray.direction;
     towards_eye.push_back(-normalized(direction));
     cosines.push_back(cos_view(hits.points[i], direction));
-    colors.push_back(appearances_[hits.hits[i].mesh].fuzz_color);
+    const RgbF& color = appearances_[hits.hits[i].mesh].fuzz_color;
+    colors.push_back(hits.textures.empty() ? color : hits.textures[i].fuzz_color.value_or(color));
+    if (boundary.is_textured()) boundaries.push_back(*hits.textures[i].boundary);
   }
   const auto specular = [&](std::size_t i) -> RgbF& { return batch.out[hits.rays[i]].specular; };
   for_each_ray({input_.rays,
@@ -32,15 +38,15 @@ void Shader::add_fuzz(const SurfaceHits& hits, const OuterBoundary& boundary, st
                 point_irradiance_seed(input_.scene.settings)},
                [&](std::size_t l, std::size_t i, const Vec3f& towards, float irradiance) {
                  const float value =
-                     boundary.fuzz_value(cosines[i], std::min(1.f, dot(hits.points[i].normal, towards)),
-                                         dot(towards_eye[i], towards));
+                     boundary_at(i).fuzz_value(cosines[i], std::min(1.f, dot(hits.points[i].normal, towards)),
+                                               dot(towards_eye[i], towards));
                  specular(i) += emitted_[l] * colors[i] * (irradiance * value);
                });
   for (std::size_t i = 0; i < arriving.size(); ++i) {
-    const Appearance& appearance = appearances_[hits.hits[i].mesh];
-    const float entering = (1 - appearance.average_reflectance) * boundary.past_fuzz();
-    specular(i) +=
-        arriving[i] * appearance.fuzz_share(cosines[i]) * (std::numbers::inv_pi_v<float> / entering);
+    const OuterBoundary& here = boundary_at(i);
+    const float entering = (1 - appearances_[hits.hits[i].mesh].average_reflectance) * here.past_fuzz();
+    const RgbF share = colors[i] * (1 - here.past_fuzz(cosines[i]));
+    specular(i) += arriving[i] * share * (std::numbers::inv_pi_v<float> / entering);
   }
 }
 

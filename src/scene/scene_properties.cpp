@@ -38,6 +38,11 @@ int bounces_of(const Scene& scene) {
   return scene.settings.method != Method::volume && shapes_exchange_light(scene) ? 1 : 0;
 }
 
+bool has_maps(const Scene& scene, std::span<const std::uint32_t> shapes) {
+  return std::ranges::any_of(
+      shapes, [&](std::uint32_t s) { return scene.shapes[s].normal_map || scene.shapes[s].bump_map; });
+}
+
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape) {
   std::vector<const Texture*> textures;
   const auto add = [&](const auto&, const std::optional<Texture>& texture, SurfacePart) {

@@ -2,6 +2,8 @@
 // Properties derived from the records of a scene.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "opaline/scene.h"
@@ -43,6 +45,8 @@ bool shapes_exchange_light(const Scene& scene);
 /// Number of bounces between surfaces: Settings::bounces, or by default 1 if one reflecting shape can
 /// illuminate another and the method supports it. A body illuminates itself only on request.
 int bounces_of(const Scene& scene);
+/// True if one of the shapes has a map of normals or heights.
+bool has_maps(const Scene& scene, std::span<const std::uint32_t> shapes);
 /// Textures of a shape and of its medium.
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
 /// True if a texture's values depend on the position in the space of the shape, instead of UVs.

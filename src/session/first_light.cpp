@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bodies/surface_boundaries.h"
 #include "bodies/surface_textures.h"
 #include "core/parallel.h"
 #include "methods/hierarchical/hierarchical_state.h"
@@ -117,6 +118,7 @@ void enlarge(const Image& coarse, const CoarseGrid& grid, Image& picture) {
 std::vector<Body> draft_groups(const PrecomputeInput& input) {
   const std::vector<Light> lights = recentred_lights(input.scene, input.world);
   const SurfaceTextures textures(input.scene, input.world);
+  const std::vector<OuterBoundary> boundaries = boundaries_of(input.scene, input.world);
   std::vector<Body> groups;
   for (std::size_t g = 0; g < input.plan.groups.size(); ++g) {
     BodyPlan plan = input.plan.groups[g];
@@ -126,8 +128,8 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
         draft_samples(input.world, plan.meshes, std::max(kFewest, plan.samples / kFewer));
     SplitKernel kernel = body_kernel(profile, surface.spacing(), input.world, input.scene);
     std::vector<LightTransfer> transfers = trace_transfers(input, g, surface.samples, lights);
-    groups.push_back({plan, profile, boundary_of(input.scene.media[plan.medium]), std::move(surface),
-                      std::move(transfers)});
+    groups.push_back(
+        {plan, profile, boundaries[plan.meshes.front()], std::move(surface), std::move(transfers)});
     Body& body = groups.back();
     body.entering = entering_tints(textures, body.surface.samples);
     set_hierarchical_state(body, entered_irradiance(body, lights), std::move(kernel));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bodies/surface_boundaries.h"
 #include "core/cancel_check.h"
 #include "image/denoise.h"
 #include "methods/hierarchical/surface_caches.h"
@@ -396,6 +397,7 @@ std::vector<MeshMotion> Session::State::mesh_motions() const {
 void Session::State::arrange_bodies() {
   std::vector<Body> bodies(plan_.groups.size());
   std::vector<BodyKeys> keys(plan_.groups.size());
+  const std::vector<OuterBoundary> boundaries = boundaries_of(scene_, *world_);
   for (std::size_t g = 0; g < bodies.size(); ++g) {
     const BodyPlan& plan = plan_.groups[g];
     const auto old = std::ranges::find_if(
@@ -407,7 +409,7 @@ void Session::State::arrange_bodies() {
     }
     bodies[g].plan = plan;
     bodies[g].profile = make_diffuse_profile(scene_.media[plan.medium], world_->unit);
-    bodies[g].boundary = boundary_of(scene_.media[plan.medium]);
+    bodies[g].boundary = boundaries[plan.meshes.front()];
   }
   bodies_ = std::move(bodies);
   keys_ = std::move(keys);

@@ -77,7 +77,28 @@ StageKey carried_samples_key(const StageKey& from, const BodyPlan& group, std::s
 void add_fuzz(KeyBuilder& key, const Fuzz& fuzz, bool colors) {
   if (!(fuzz.weight > 0)) return;
   key.add(std::string("fuzz")).add(fuzz.weight).add(fuzz.roughness);
+  for (const auto& texture : {&fuzz.weight_texture, &fuzz.roughness_texture})
+    if (*texture) add_to_key(key.add(texture == &fuzz.weight_texture), **texture);
   if (colors) key.add(fuzz.color);
+  if (colors && fuzz.color_texture) add_to_key(key.add(std::string("color")), *fuzz.color_texture);
+}
+
+void add_fuzz(KeyBuilder& key, const Scene& scene, const World& world, const Fuzz& fuzz,
+              std::span<const std::uint32_t> meshes) {
+  add_fuzz(key, fuzz);
+  if (fuzz.weight_texture || fuzz.roughness_texture) add_spaces(key, scene, world, meshes);
+}
+
+void add_maps(KeyBuilder& key, const Scene& scene, const World& world,
+              std::span<const std::uint32_t> meshes) {
+  for (const std::uint32_t m : meshes) {
+    const Shape& shape = scene.shapes[m];
+    if (!shape.normal_map && !shape.bump_map) continue;
+    for (const auto& map : {&shape.normal_map, &shape.bump_map})
+      if (*map) add_to_key(key.add(std::string("map")).add(m), **map);
+    add_coordinates(key, world.meshes[m]);
+    add_solid_space(key, scene, m);
+  }
 }
 
 StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std::span<const MeshKeys> meshes,
@@ -86,7 +107,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
   KeyBuilder key("transfer", kTransferVersion);
   key.add(embree_version()).add(std::string(widest_instructions()));
   const Medium& medium = input.scene.media[plan.medium];
-  add_fuzz(key.add(samples).add(medium.eta), medium.fuzz);
+  add_fuzz(key.add(samples).add(medium.eta), input.scene, input.world, medium.fuzz, plan.meshes);
   key.add(std::uint64_t(light.source.index()));
   key.add_array(std::span<const double>(geometry(light)));
   if (!is_delta(light))
@@ -94,6 +115,7 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
         .add(std::uint64_t(group))
         .add(light_seed(0, light));
   if (plan.cell > 0) key.add(std::string("geometric normals"));
+  add_maps(key, input.scene, input.world, plan.meshes);
   for (std::uint32_t m = 0; m < meshes.size(); ++m)
     if (may_shadow(meshes, m, plan, light, input.world.unit)) key.add(meshes[m].shape);
   return key.key();

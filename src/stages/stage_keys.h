@@ -57,6 +57,11 @@ StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> tran
 /// Adds fuzz, unless its weight is 0: a scene without fuzz keeps its keys.
 /// in    colors: with the colour; light past the fuzz is independent of it
 void add_fuzz(KeyBuilder& key, const Fuzz& fuzz, bool colors = false);
+/// The same, with the coordinates of its textures on some meshes.
+void add_fuzz(KeyBuilder& key, const Scene& scene, const World& world, const Fuzz& fuzz,
+              std::span<const std::uint32_t> meshes);
+/// Adds the normal and bump maps of meshes, unless they have none.
+void add_maps(KeyBuilder& key, const Scene& scene, const World& world, std::span<const std::uint32_t> meshes);
 /// Adds a medium's coefficients and radial profile.
 void add_profile(KeyBuilder& key, const Medium& medium);
 /// Cache key of the shape of a profile from random walks, in mean free paths.

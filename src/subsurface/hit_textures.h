@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "bodies/surface_textures.h"
+#include "transport/outer_boundary.h"
 
 namespace opaline {
 
@@ -12,6 +13,8 @@ struct HitTextures {
   SurfaceTint tint;
   RgbF reflected{};                               ///< SurfaceTextures::reflected
   std::optional<float> roughness{}, metalness{};  ///< none: the surface's own
+  std::optional<RgbF> fuzz_color{};               ///< none: the surface's own
+  std::optional<OuterBoundary> boundary{};        ///< with textures of fuzz
   float slope_variance = 0;                       ///< SurfaceTextures::bend
   bool is_bent = false;                           ///< maps have turned the shading normal
   Vec3f tangent{};                                ///< SurfaceTextures::tangent

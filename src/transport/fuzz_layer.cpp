@@ -196,13 +196,17 @@ float FuzzLayer::value(float view, float light, float between) const {
   return float(once) + value_of(further_orders_, view) * value_of(further_orders_, light) * of_further_;
 }
 
-std::shared_ptr<const FuzzLayer> shared_fuzz(double roughness) {
+const FuzzLayer* shared_fuzz(double roughness) {
   static std::mutex mutex;
-  static std::map<double, std::shared_ptr<const FuzzLayer>> known;
+  static std::map<double, FuzzLayer> known;
+  const double clamped = std::max(FuzzLayer::kLeast, roughness);
+  {
+    const std::lock_guard lock(mutex);
+    if (const auto found = known.find(clamped); found != known.end()) return &found->second;
+  }
+  const FuzzLayer layer(clamped);
   const std::lock_guard lock(mutex);
-  std::shared_ptr<const FuzzLayer>& layer = known[std::max(FuzzLayer::kLeast, roughness)];
-  if (layer == nullptr) layer = std::make_shared<const FuzzLayer>(roughness);
-  return layer;
+  return &known.try_emplace(clamped, layer).first->second;
 }
 
 }  // namespace opaline

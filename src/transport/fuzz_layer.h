@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <memory>
 
 namespace opaline {
 
@@ -35,7 +34,7 @@ class FuzzLayer {
   float average_ = 0, of_further_ = 0;  // 1/(2 pi integral of further_orders_ mu)
 };
 
-/// The same layer on each call with a roughness.
-std::shared_ptr<const FuzzLayer> shared_fuzz(double roughness);
+/// The same layer on each call with a roughness, until the program ends.
+const FuzzLayer* shared_fuzz(double roughness);
 
 }  // namespace opaline

@@ -56,7 +56,8 @@ Wall BodyInside::wall_of(const TracedRay& traced) const {
   const Vec3d position = Vec3d(traced.ray.origin) + Vec3d(traced.ray.direction) * distance;
   return {distance,
           {position, normalized(Vec3d(traced.hit.edges_cross)),
-           double(rays_.offset(traced.hit.mesh, Vec3f(position)))},
+           double(rays_.offset(traced.hit.mesh, Vec3f(position))), traced.hit.mesh, traced.hit.triangle,
+           traced.hit.u, traced.hit.v},
           is_body_[traced.hit.mesh]};
 }
 

@@ -16,6 +16,8 @@ namespace opaline {
 struct BoundaryPoint {
   Vec3d position, normal;  ///< geometric, unit, out of the body
   double offset = 0;       ///< distance of ray origins from the surface
+  std::uint32_t mesh = SurfacePoint::kNoMesh, triangle = 0;
+  float u = 0, v = 0;
 
   Vec3d inside() const { return position - normal * offset; }
   Vec3d outside() const { return position + normal * offset; }
@@ -44,7 +46,13 @@ class BodyInside {
   std::optional<BoundaryPoint> entry(const Vec3d& from, const Vec3d& direction) const;
 
   BoundaryPoint at(const SurfacePoint& point) const {
-    return {Vec3d(point.position), Vec3d(point.geometric), double(rays_.offset(point))};
+    return {Vec3d(point.position),
+            Vec3d(point.geometric),
+            double(rays_.offset(point)),
+            point.mesh,
+            point.triangle,
+            point.u,
+            point.v};
   }
 
  private:

@@ -52,8 +52,8 @@ class BodyWalks::Walker {
 
   void arrive(const BoundaryPoint& point, const ArrivedLight& light, double weight) {
     const double cosine = std::min(1.0, -dot(point.normal, light.direction));
-    const double reflectance = fresnel_reflectance(cosine, medium_.eta), past_fuzz = passes_fuzz(cosine),
-                 enters = weight * past_fuzz * (1 - reflectance);
+    const double reflectance = fresnel_reflectance(cosine, medium_.eta),
+                 past_fuzz = passes_fuzz(point, cosine), enters = weight * past_fuzz * (1 - reflectance);
     counts_.entered += enters;
     if (enters > 0)
       pending_.push_back(
@@ -69,7 +69,14 @@ class BodyWalks::Walker {
   }
 
  private:
-  double passes_fuzz(double cosine) const { return double(body_.input_.boundary.past_fuzz(float(cosine))); }
+  double passes_fuzz(const BoundaryPoint& at, double cosine) const {
+    const OuterBoundary& boundary = body_.input_.boundary;
+    if (!boundary.is_textured()) return double(boundary.past_fuzz(float(cosine)));
+    SurfacePoint point{};
+    point.mesh = at.mesh, point.triangle = at.triangle;
+    point.u = at.u, point.v = at.v;
+    return double(boundary.at(point).past_fuzz(float(cosine)));
+  }
 
   // Continues light that has left or was reflected, and may re-enter. Uses its own random numbers: without
   // re-entry, the walks are unchanged.
@@ -87,12 +94,12 @@ class BodyWalks::Walker {
       const std::optional<BoundaryPoint> met = body_.inside_.entry(from, direction);
       if (!met) return;
       const double cosine = std::min(1.0, -dot(met->normal, direction));
-      weight *= passes_fuzz(cosine);
+      weight *= passes_fuzz(*met, cosine);
       if (outside_numbers_.next() >= fresnel_reflectance(cosine, medium_.eta)) {
         pending_.push_back({met->inside(), refracted_inward(direction, met->normal, medium_.eta), weight, 0});
         return;
       }
-      weight *= passes_fuzz(cosine);
+      weight *= passes_fuzz(*met, cosine);
       direction = mirrored(direction, met->normal);
       from = met->outside();
     }
@@ -180,7 +187,7 @@ class BodyWalks::Walker {
     }
     counts_.flux[body_.cells_.at(Vec3f(point.position), Vec3f(point.normal))] += float(weight);
     const Vec3d outward = refracted_outward(direction, point.normal, medium_.eta);
-    send_outside(point, outward, weight * passes_fuzz(dot(outward, point.normal)));
+    send_outside(point, outward, weight * passes_fuzz(point, dot(outward, point.normal)));
   }
 
   const BodyWalks& body_;
@@ -214,6 +221,17 @@ SphereExits BodyWalks::exits_of(std::size_t pass) const {
   return {std::clamp(starts_ / kStarts, kFewest, kMost), hash_bits(input_.seed + 1, pass)};
 }
 
+// Light entering by the normals of maps, over the surface's own.
+double BodyWalks::bent_share(SurfacePoint point, const ArrivedLight& light, double eta) const {
+  const double cosine = std::min(1., -dot(Vec3d(point.geometric), light.direction));
+  point.normal = point.geometric;
+  const double factor = double(input_.bend(point)),
+               bent = std::min(1., -dot(Vec3d(point.normal), light.direction));
+  if (!(bent > 0)) return 0;
+  const double entering = 1 - fresnel_reflectance(bent, eta), own = 1 - fresnel_reflectance(cosine, eta);
+  return factor * bent / cosine * (own > 0 ? entering / own : 1);
+}
+
 // Channels of a light share the starts, so their difference has no noise from them.
 WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chunk,
                            const SphereExits& exits) const {
@@ -231,6 +249,7 @@ WalkCounts BodyWalks::walk(const WalkJob& job, std::size_t pass, std::size_t chu
     double irradiance = light.irradiance[job.channel];
     if (irradiance > 0 && input_.entering_tint)
       irradiance *= double(input_.entering_tint(at.mesh, at.triangle, at.u, at.v)[job.channel]);
+    if (irradiance > 0 && input_.bend) irradiance *= bent_share(entry, light, medium(job.channel).eta);
     if (!(irradiance > 0)) continue;
     Walker(*this, job.channel, exits, counts, WalkNumbers(job.seed + 1 + 2 * job.channel, start),
            WalkNumbers(job.seed + 2 + 2 * job.channel, start), irradiance)

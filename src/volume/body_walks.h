@@ -58,6 +58,8 @@ class BodyWalks {
     return voxels_ ? voxels_->densest(channel) : input_.media[channel];
   }
 
+  double bent_share(SurfacePoint point, const ArrivedLight& light, double eta) const;
+
   const VolumeInput& input_;
   EvenPoints points_;
   BodyInside inside_;

@@ -32,6 +32,8 @@ struct VolumeInput {
   bool reenter = true;  ///< enables re-entry of light into the body
   /// Factor on incident light by position: mesh, triangle and barycentrics. Empty: none.
   std::function<RgbF(std::uint32_t mesh, std::uint32_t triangle, float u, float v)> entering_tint = {};
+  /// Turns the normal of a point by maps; returns a factor of the light entering. Empty: no maps.
+  std::function<float(SurfacePoint&)> bend = {};
   OuterBoundary boundary = {};    ///< boundary of `media`; its fuzz holds light back
   MediaInside media_inside = {};  ///< heterogeneous medium, with `media` about its mean. Empty: homogeneous
 };

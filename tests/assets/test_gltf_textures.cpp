@@ -116,6 +116,36 @@ TEST(GltfTextures, HaveTheUvsOfTheBaseColour) {
   }
 }
 
+// Claim: the sheen's textures are those of fuzz: the weight by the brightest channel, times its factor, the mean hue for the fibres, the
+// roughness by alpha. Source: by hand: linear .8 and .2 in the left half, times (.5, 1, 1). Tolerance: bytes, .003. Fails if: the colour
+// counts as linear, the channel is red, the hue is that of the factor alone, or a texture is reported as lost.
+TEST(GltfTextures, OfSheenAreThoseOfFuzz) {
+  const ScratchFolder folder;
+  test::put_png(folder.file("p.png"), 4, 2, [&](int x, int) {
+    return x < 2 ? test::Bytes{231, 231, 124} : test::Bytes{0, 0, 0};
+  });
+  Json material = {{"extensions",
+                    {{"KHR_materials_sheen",
+                      {{"sheenColorFactor", {.5, 1, 1}},
+                       {"sheenColorTexture", {{"index", 0}}},
+                       {"sheenRoughnessFactor", .6},
+                       {"sheenRoughnessTexture", {{"index", 0}}}}}}}};
+  const Json image = {{"uri", "data:image/png;base64," + base64(bytes_of(folder.file("p.png")))}};
+  const std::string glb = textured_triangle(material, image).glb();
+  const Fuzz fuzz = scene_of(glb, "a.glb").shapes.at(0).fuzz;
+  ASSERT_TRUE(fuzz.weight_texture && fuzz.roughness_texture);
+  EXPECT_EQ(fuzz.weight_texture->channel, 1u);
+  EXPECT_EQ(fuzz.weight_texture->scale.x, 1);
+  EXPECT_NEAR(double(fuzz.weight_texture->source->image()->at({.25f, .5f, {}, {}})[1]), .8, .003);
+  EXPECT_EQ(fuzz.roughness_texture->channel, 3u);
+  EXPECT_EQ(fuzz.roughness_texture->scale.x, .6);
+  EXPECT_NEAR(fuzz.color.x, .5, .003);
+  EXPECT_NEAR(fuzz.color.y, 1, .003);
+  EXPECT_NEAR(fuzz.color.z, .25, .004);
+  put_bytes(folder.file("a.glb"), glb);
+  EXPECT_TRUE(import_asset(folder.file("a.glb"), folder.file("a.glb")).not_carried.empty());
+}
+
 // Claim: what glTF says of textures becomes what the scene says: factors, channels, KHR_texture_transform, the strength of
 // normals; of a translucent body a tint and a roughness. Fails if a channel is another or a factor is lost.
 TEST(GltfTextures, BecomeTheScenes) {

@@ -204,6 +204,34 @@ TEST(MaterialX, FuzzAndSheenAreFuzz) {
             Fuzz());
 }
 
+// Claim: images connected to the inputs of fuzz are its textures, with their tiling and colour space; other connections are reported.
+// Source: MaterialX 1.39. Fails if: an input loses its image, the weight is lost with it, or a colour space of the document's is ignored.
+TEST(MaterialX, ImagesOfFuzzAreTextures) {
+  const auto import = [](const std::string& inputs) {
+    const MaterialFolder folder(R"(<materialx colorspace="lin_rec709">
+      <nodegraph name="NG"><tiledimage name="w" type="float"><input name="file" type="filename" value="w.png"/>
+        <input name="uvtiling" type="vector2" value="2, 3"/></tiledimage><output name="out" type="float" nodename="w"/></nodegraph>
+      <image name="c" type="color3"><input name="file" type="filename" value="c.png" colorspace="srgb_texture"/></image>
+      <open_pbr_surface name="s">)" +
+                                inputs + "</open_pbr_surface></materialx>");
+    put_bytes(folder.file("w.png"), "");
+    put_bytes(folder.file("c.png"), "");
+    return folder.import("cube.glb");
+  };
+  const ImportedAsset all = import(R"(<input name="fuzz_weight" type="float" nodegraph="NG" output="out"/>
+    <input name="fuzz_color" type="color3" nodename="c"/><input name="fuzz_roughness" type="float" nodegraph="NG" output="out"/>)");
+  const Json keys = Json::parse(all.text, nullptr, true, true).at("shapes").at(0);
+  EXPECT_TRUE(keys.at("fuzz_weight").at("texture").get<std::string>().ends_with("w.png")) << all.text;
+  EXPECT_EQ(keys.at("fuzz_weight").at("uv_scale"), Json({2, 3}));
+  EXPECT_EQ(keys.at("fuzz_color").at("color_space"), "srgb");
+  EXPECT_TRUE(keys.at("fuzz_roughness").contains("texture"));
+  EXPECT_FALSE(has(all.not_carried, "fuzz")) << all.text;
+  const ImportedAsset lost = import(
+      R"(<input name="fuzz_weight" value="0.5"/><input name="fuzz_color" type="color3" nodename="x"/>)");
+  EXPECT_TRUE(has(lost.not_carried, "fuzz_color: it is connected to no image"));
+  EXPECT_EQ(Json::parse(lost.text, nullptr, true, true).at("shapes").at(0).at("fuzz_weight"), .5);
+}
+
 // Claim: a bump of an image that the surface's normal is connected to, directly or through a graph, is a bump map of its
 // scale in the asset's unit, laid by its tiling from the lower left; other connections are said. Source: MaterialX 1.39, bump.
 // Fails if the scale is in mm, or the prefix of files is dropped.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <tuple>
@@ -126,6 +127,35 @@ TEST(OuterBoundary, TransmitsPastFuzz) {
   EXPECT_TRUE(OuterBoundary(1.4, {.weight = 0, .roughness = 1}) == OuterBoundary(1.4));
   EXPECT_FALSE(half == all);
   EXPECT_NE(half.number(), all.number());
+}
+
+// Claim: a textured boundary transmits at a point by the mixture of layers there, which is reciprocal, and equals others with equal textures
+// only. Source: definitions. Tolerance: rounding. Fails if: the largest weight is used at points, or textures do not count.
+TEST(OuterBoundary, IsThatOfThePoint) {
+  const FuzzLayer &flat = *shared_fuzz(.4), &rough = *shared_fuzz(.8);
+  const auto textures = [&](std::uint64_t hash) {
+    return std::make_shared<const FuzzTextures>(
+        FuzzTextures{[&](const SurfacePoint& point) {
+                       return point.u > 0 ? LocalFuzz{.5f, &flat, &rough, .25f} : LocalFuzz{};
+                     },
+                     hash});
+  };
+  const Fuzz fuzz{.weight = 1, .roughness = 1};
+  const OuterBoundary boundary(1.4, fuzz, textures(1));
+  EXPECT_TRUE(boundary.is_textured() && boundary.has_fuzz());
+  SurfacePoint bare, covered;
+  covered.u = .5f;
+  EXPECT_TRUE(boundary.at(bare) == OuterBoundary(1.4));
+  const OuterBoundary here = boundary.at(covered);
+  EXPECT_FALSE(here.is_textured());
+  const float held = .75f * flat.reflectance(.3f) + .25f * rough.reflectance(.3f);
+  EXPECT_NEAR(here.transmittance(.3f), fresnel_transmittance(.3f, 1.4f) * (1 - .5f * held), 1e-6);
+  EXPECT_NEAR(here.past_fuzz(),
+              1 - .5f * (.75f * flat.average_reflectance() + .25f * rough.average_reflectance()), 1e-6);
+  EXPECT_NEAR(here.fuzz_value(.3f, .8f, .5f), here.fuzz_value(.8f, .3f, .5f), 1e-6);
+  EXPECT_TRUE(boundary == OuterBoundary(1.4, fuzz, textures(1)));
+  EXPECT_FALSE(boundary == OuterBoundary(1.4, fuzz, textures(2)));
+  EXPECT_FALSE(boundary == OuterBoundary(1.4, fuzz));
 }
 
 }  // namespace

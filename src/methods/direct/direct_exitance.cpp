@@ -95,6 +95,8 @@ std::vector<RgbF> direct_exitance(const DirectExitanceInput& input) {
         const std::uint64_t entry_key = hash_bits(sample_key, 2 + e);
         if (!survives(entries[e], usual, unit_double(entry_key))) continue;
         entries[e].tint = entering_tint(input, entries[e], p);
+        if (input.textures != nullptr && entries[e].mesh != Hit::kMiss)
+          entries[e].tint *= input.textures->bend(entries[e].point);
         entry_points.push_back(entries[e].point);
         taken.push_back(entries[e]);
         keys.push_back(entry_key);

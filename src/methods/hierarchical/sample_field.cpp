@@ -9,6 +9,7 @@
 #include "methods/hierarchical/near_field/crease_error.h"
 #include "methods/hierarchical/near_field/selection_bias.h"
 #include "render/fields/make_fields.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 namespace {
@@ -122,8 +123,9 @@ LeavingLight SampleField::at_points(const SurfaceHits& hits, PointIrradianceInpu
       state_.cache() != nullptr && asks_irradiance_
           ? looked_up(hits, light.irradiance)
           : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
-  // Beside edges of a tint, the samples' irradiance differs from the point's own without a shadow edge.
-  if (looks_near && group_.entering.empty()) refine_near_field(lighting, exitance, light);
+  // Beside edges of a tint or bump, the samples' irradiance differs from the point's own without a shadow edge.
+  if (looks_near && group_.entering.empty() && !has_maps(input_.scene, group_.plan.meshes))
+    refine_near_field(lighting, exitance, light);
   put_exitance(exitance, light);
   return light;
 }

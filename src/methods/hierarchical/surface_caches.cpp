@@ -16,6 +16,7 @@
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/near_field/near_field_sampler.h"
 #include "render/camera_rays.h"
+#include "scene/scene_properties.h"
 #include "subsurface/method.h"
 
 namespace opaline {
@@ -62,12 +63,13 @@ std::uint64_t key_of(const Vec3f& p) {
 
 /// True if a cache can store the exitance depending on the point's own irradiance, so images trace no shadow
 /// rays. Excludes meshes without smooth normals, whose facets differ in irradiance; mean free paths far below
-/// the sample spacing, whose shadows are too sharp to interpolate; and bounced light, computed at the image's
-/// points only.
+/// the sample spacing, whose shadows are too sharp to interpolate; textures of fuzz; maps of normals and heights;
+/// and bounced light, computed at the image's points only.
 bool can_hold_own_light(const Scene& scene, const World& world, const Body& group) {
   const SplitKernel& kernel = hierarchical_state(group).kernel();
   const auto& own = kernel.own_irradiance;
-  return bounces_of(scene) == 0 && kernel.needs_irradiance() &&
+  return bounces_of(scene) == 0 && kernel.needs_irradiance() && !group.boundary.is_textured() &&
+         !has_maps(scene, group.plan.meshes) &&
          std::ranges::all_of(own, [](float s) { return s <= kSharp; }) &&
          std::ranges::none_of(group.plan.meshes,
                               [&](std::uint32_t m) { return world.meshes[m].normals.empty(); });

@@ -91,9 +91,10 @@ StageKey lit_key(const BodyStages& stages, double spacing) {
   const Medium& medium = scene.media[stages.body.plan.medium];
   KeyBuilder key("light views", kVersion);
   add_profile(key, medium);
-  add_fuzz(key, medium.fuzz);
+  add_fuzz(key, scene, world, medium.fuzz, stages.body.plan.meshes);
   key.add(spacing).add(world.diagonal).add(world.unit);
   key.add(settings_in_key(KeyedStage::transfers, scene)).add(settings_in_key(KeyedStage::kernel, scene));
+  add_maps(key, scene, world, stages.body.plan.meshes);
   for (const MeshKeys& mesh : stages.mesh_keys) key.add(mesh.all);
   for (const std::uint32_t mesh : stages.body.plan.meshes) key.add(mesh);
   for (const Light& light : scene.lights) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bodies/surface_textures.h"
+#include "bodies/surface_boundaries.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "irradiance/shadow_batch.h"
@@ -151,7 +151,7 @@ class Views {
   Views(const PrecomputeInput& input, const BodyPlan& body)
       : input_(input),
         textures_(input.scene, input.world),
-        boundary_(boundary_of(input.scene.media[body.medium])),
+        boundary_(boundaries_of(input.scene, input.world)[body.meshes.front()]),
         is_own_(input.world.meshes.size()) {
     for (const std::uint32_t mesh : body.meshes) is_own_[mesh] = true;
   }
@@ -183,8 +183,8 @@ class Views {
   void add(const TracedRay& met, float across, std::span<const Light> lights, const Standpoint& from,
            int count, std::vector<FluxSample>& points) const {
     constexpr float kLeastCosine = .02f;
-    const SurfacePoint point =
-        input_.rays.surface_point(met.hit.mesh, met.hit.triangle, met.hit.u, met.hit.v);
+    SurfacePoint point = input_.rays.surface_point(met.hit.mesh, met.hit.triangle, met.hit.u, met.hit.v);
+    point.width = std::sqrt(across);
     Weights weights = from.weights;
     Vec3f direction = from.direction;
     if (std::isfinite(from.distance)) {
@@ -192,20 +192,19 @@ class Views {
       direction = sample.direction;
       weights[0] = sample.weight;
     }
-    const float facing = dot(point.geometric, direction),
+    const float facing = dot(point.geometric, direction), factor = textures_.bend(point),
                 cosine = std::min(1.f, dot(point.normal, direction));
     if (!(facing > 0) || !(cosine > 0)) return;
     RgbF emitted;
     for (std::size_t l = 0; l < lights.size(); ++l) emitted += RgbF(emission(lights[l])) * weights[l];
     if (!(max_component(emitted) > 0)) return;
     if (textures_.tints_entering(met.hit.mesh)) {
-      const float width = std::sqrt(across);
       const auto place = textures_.place(met.hit.mesh, met.hit.triangle, met.hit.u, met.hit.v,
-                                         footprint_of(point, met.ray.direction, width));
+                                         footprint_of(point, met.ray.direction, point.width));
       emitted = emitted * textures_.tint(place).entering;
     }
     points.push_back({point.position, across / std::max(facing, kLeastCosine),
-                      emitted * (cosine * boundary_.transmittance(cosine)), point.normal});
+                      emitted * (factor * cosine * boundary_.at(point).transmittance(cosine)), point.normal});
   }
 
   const PrecomputeInput& input_;

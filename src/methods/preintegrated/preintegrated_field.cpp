@@ -169,10 +169,12 @@ void PreintegratedField::add_unoccluded(std::span<const SurfacePoint> points, st
   for (std::size_t r = 0; r < shadow.size(); ++r) {
     if (shadow[r].far < 0) continue;
     const Incident& light = incident[numbers[r]];
-    const float cosine = std::min(1.f, dot(points[light.hit].normal, light.towards));
-    result.exitance[light.hit] += returned[r] * light.irradiance * past_fuzz(boundary_, cosine);
+    const SurfacePoint& point = points[light.hit];
+    const float cosine = std::min(1.f, dot(point.normal, light.towards));
+    const OuterBoundary boundary = boundary_.at(point);
+    result.exitance[light.hit] += returned[r] * light.irradiance * past_fuzz(boundary, cosine);
     if (cosine > 0)
-      result.irradiance[light.hit] += light.irradiance * (cosine * boundary_.transmittance(cosine));
+      result.irradiance[light.hit] += light.irradiance * (cosine * boundary.transmittance(cosine));
   }
 }
 

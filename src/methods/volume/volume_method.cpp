@@ -14,6 +14,7 @@
 #include "methods/volume/cell_warnings.h"
 #include "methods/volume/volume_state.h"
 #include "methods/volume/walk_input.h"
+#include "scene/scene_properties.h"
 
 namespace opaline {
 namespace {
@@ -31,7 +32,9 @@ std::vector<StageKey> walk_keys(const BodyStages& stages, const VolumeInput& wal
   common.add(settings_in_key(KeyedStage::walks, stages.input.scene));
   for (const HomogeneousMedium& medium : walks.media) common.add(medium);
   if (medium_inside != StageKey{}) common.add(medium_inside);
-  add_fuzz(common, stages.input.scene.media[stages.body.plan.medium].fuzz);
+  const Scene& scene = stages.input.scene;
+  add_fuzz(common, scene, stages.input.world, scene.media[stages.body.plan.medium].fuzz, walks.meshes);
+  add_maps(common, scene, stages.input.world, walks.meshes);
   for (const std::uint32_t m : walks.meshes) common.add(m);
   for (const MeshKeys& mesh : stages.mesh_keys) common.add(mesh.shape);
   const bool alone = walks_by_light(walks);
@@ -108,8 +111,10 @@ void VolumeMethod::prepare(BodyStages& stages) const {
   VolumeInput walks = walk_input(input, stages.body, stages.lights);
   std::optional<SurfaceTextures> textures;
   const StageKey tint = tint_key(input.scene, input.world, stages.body.plan.meshes, stages.keys.samples_key);
+  const bool is_bent = has_maps(input.scene, stages.body.plan.meshes);
+  if (tint != StageKey{} || is_bent) textures.emplace(input.scene, input.world);
+  if (is_bent) walks.bend = [&](SurfacePoint& point) { return textures->bend(point); };
   if (tint != StageKey{}) {
-    textures.emplace(input.scene, input.world);
     walks.entering_tint = [&](std::uint32_t mesh, std::uint32_t triangle, float u, float v) {
       return textures->tint(textures->place(mesh, triangle, u, v, {})).entering;
     };

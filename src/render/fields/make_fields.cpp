@@ -38,12 +38,12 @@ struct SurfaceKind {
 };
 
 SurfaceKind kind_of(const RenderInput& input, std::span<const FieldSource> sources, const Body* body,
-                    std::size_t mesh) {
+                    std::size_t mesh, const OuterBoundary& boundary) {
   const Shape& shape = input.scene.shapes[mesh];
-  if (!shape.medium) return {.boundary = boundary_of_opaque(shape)};
-  const Medium& medium = input.scene.media[*shape.medium];
-  SurfaceKind kind{
-      .group = body, .boundary = boundary_of(medium), .is_partly_opaque = is_partly_opaque(medium)};
+  if (!shape.medium) return {.boundary = boundary};
+  SurfaceKind kind{.group = body,
+                   .boundary = boundary,
+                   .is_partly_opaque = is_partly_opaque(input.scene.media[*shape.medium])};
   for (const FieldSource& source : sources)
     if (has_mesh(source.meshes, mesh)) kind.source = &source;
   return kind;
@@ -68,13 +68,13 @@ std::vector<RgbF> albedos_of(const Scene& scene) {
 }  // namespace
 
 Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
-                   std::span<const FieldSource> sources) {
+                   std::span<const OuterBoundary> boundaries, std::span<const FieldSource> sources) {
   const std::vector<RgbF> albedos = albedos_of(input.scene);
   const std::vector<const Body*> bodies = bodies_of_meshes(input);
   Fields fields;
   std::vector<SurfaceKind> kinds;
   for (std::size_t mesh = 0; mesh < input.world.meshes.size(); ++mesh) {
-    const SurfaceKind kind = kind_of(input, sources, bodies[mesh], mesh);
+    const SurfaceKind kind = kind_of(input, sources, bodies[mesh], mesh, boundaries[mesh]);
     const auto known = std::ranges::find(kinds, kind);
     fields.of_mesh.push_back(std::size_t(known - kinds.begin()));
     if (known != kinds.end()) continue;

@@ -24,9 +24,9 @@ struct Fields {
   std::vector<std::size_t> of_mesh;  ///< an index into `all` for each mesh of the world
 };
 
-/// in    sources: of meshes without a body. All arguments must outlive the fields
+/// in    boundaries: one per mesh; sources: of meshes without a body. All arguments but the boundaries must outlive the fields
 Fields make_fields(const RenderInput& input, const SurfaceTextures& textures,
-                   std::span<const FieldSource> sources);
+                   std::span<const OuterBoundary> boundaries, std::span<const FieldSource> sources);
 
 /// Shadow rays from a hit to each light with an area: the camera rays of a pixel share the setting's.
 int light_samples_of_ray(const Scene& scene);
