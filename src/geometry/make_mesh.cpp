@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "geometry/builtin_shapes.h"
 #include "geometry/check_mesh.h"
+#include "geometry/displace.h"
 #include "geometry/read_mesh.h"
 #include "geometry/shape_label.h"
 #include "geometry/subdivide.h"
@@ -126,6 +127,24 @@ SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs)
   return mesh;
 }
 
+/// Checks the mesh before, for normals on its outside, and after its vertices have moved.
+CheckedMesh make_displaced(const Shape& shape, SourceMesh mesh, CheckSettings settings, CheckMemory* memory) {
+  const double crease_angle = mesh.smoothing.crease_angle;
+  mesh.normals.clear();
+  mesh.smoothing = {};
+  const bool is_smooth = std::exchange(settings.smooth, true);
+  CheckedMesh before = check_mesh(std::move(mesh), settings, memory);
+  SourceMesh moved = displaced(std::move(before.mesh), shape);
+  moved.smoothing.crease_angle = crease_angle;
+  settings.smooth = is_smooth;
+  settings.fill_holes = FillHoles::none;
+  CheckedMesh after = check_mesh(std::move(moved), settings);
+  const std::size_t dropped = after.report.zero_area_dropped;
+  after.report = std::move(before.report);
+  after.report.zero_area_dropped += dropped;
+  return after;
+}
+
 CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh mesh, CheckMemory* memory) {
   CheckSettings settings;
   settings.name = name;
@@ -137,6 +156,7 @@ CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh me
   else if (shape.medium)
     settings.fill_holes = FillHoles::if_small;
   place(mesh, shape.to_world, name);
+  if (shape.displacement) return make_displaced(shape, std::move(mesh), settings, memory);
   return check_mesh(std::move(mesh), settings, memory);
 }
 

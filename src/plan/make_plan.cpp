@@ -58,7 +58,7 @@ void check_reach(const Scene& scene, const World& world) {
   if (world.meshes.empty()) return;
   check_distance(scene, "camera.position", length(into_world(world, scene.camera.position)), world.unit);
   for (const Light& light : scene.lights) {
-    const Light moved = recentred(light, world.origin, world.unit);
+    const Light moved = light_in_world(scene, world, light);
     const std::string name = "the light '" + light.name + "'";
     check_distance(scene, name, reach_of(moved), world.unit);
     const double brightest = max_component(emission(moved));
