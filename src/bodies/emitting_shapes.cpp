@@ -18,18 +18,17 @@ EmittingSurface::Texels texels_of(const Texture& texture, const Shape& shape) {
   const bool has_whole_faces = std::holds_alternative<QuadShape>(shape.source) ||
                                std::holds_alternative<BoxShape>(shape.source) ||
                                std::holds_alternative<SlabShape>(shape.source);
-  const std::optional<SolidSpace> space =
-      is_solid(texture) || std::ranges::any_of(texture.details, is_solid)
-          ? std::optional(solid_space(shape.to_world))
-          : std::nullopt;
-  return [=](const World& world, std::uint32_t triangle, float u, float v,
-             const std::array<Vec3f, 2>& sides) {
-    SurfaceTextures::Place place{0, {}, {sides[0], sides[1]}};
-    place.on_whole_face = has_whole_faces;
-    if (!world.meshes[0].uvs.empty()) place.uv = surface_uv(world.meshes[0], triangle, u, v);
-    if (space) place.solid = solid_place(*space, world, 0, triangle, u, v, sides);
-    return color_at(texture, place);
-  };
+  const std::optional<SolidSpace> space = is_solid(texture) || std::ranges::any_of(texture.details, is_solid)
+                                              ? std::optional(solid_space(shape.to_world))
+                                              : std::nullopt;
+  return
+      [=](const World& world, std::uint32_t triangle, float u, float v, const std::array<Vec3f, 2>& sides) {
+        SurfaceTextures::Place place{0, {}, {sides[0], sides[1]}};
+        place.on_whole_face = has_whole_faces;
+        if (!world.meshes[0].uvs.empty()) place.uv = surface_uv(world.meshes[0], triangle, u, v);
+        if (space) place.solid = solid_place(*space, world, 0, triangle, u, v, sides);
+        return color_at(texture, place);
+      };
 }
 
 StageKey surface_key(const Scene& scene, const World& world, std::size_t shape) {

@@ -84,9 +84,8 @@ std::vector<float> mean_heights(const Mesh& mesh, const std::vector<std::array<f
 
 SourceMesh displaced(Mesh mesh, const Shape& shape) {
   const Texture& texture = *shape.displacement;
-  const std::vector<float> heights = is_solid(texture)
-                                         ? solid_heights(mesh, texture, shape.to_world)
-                                         : mean_heights(mesh, corner_heights(mesh, texture));
+  const std::vector<float> heights = is_solid(texture) ? solid_heights(mesh, texture, shape.to_world)
+                                                       : mean_heights(mesh, corner_heights(mesh, texture));
   SourceMesh moved;
   moved.positions = std::move(mesh.positions);
   for (std::size_t v = 0; v < moved.positions.size(); ++v)

@@ -18,6 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kMostTriangles = 200'000'000;
+constexpr std::size_t kFewVertices = 1000;  // of a displaced mesh
 
 struct SourceReader {
   const std::string& name;
@@ -142,6 +143,10 @@ CheckedMesh make_displaced(const Shape& shape, SourceMesh mesh, CheckSettings se
   const std::size_t dropped = after.report.zero_area_dropped;
   after.report = std::move(before.report);
   after.report.zero_area_dropped += dropped;
+  if (after.mesh.positions.size() < kFewVertices)
+    after.report.warnings.push_back(
+        settings.name + ": displacement moves " + std::to_string(after.mesh.positions.size()) +
+        " vertices alone; a finer mesh shows more of it, such as a file with a larger 'subdivide'");
   return after;
 }
 

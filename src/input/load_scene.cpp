@@ -96,14 +96,14 @@ std::vector<Light> by_channel(const std::vector<Light>& lights) {
   return split;
 }
 
-/// error if a light has the name of an emitting shape
+/// A light of a shape has the shape's name, with an addition if another light has it.
 void add_lights_of_shapes(const std::vector<Light>& emitted, std::vector<Light>& lights) {
-  for (const Light& light : emitted)
-    if (light.name == "surroundings" || std::ranges::find(lights, light.name, &Light::name) != lights.end())
-      throw told_at(light.place,
-                    bad_file("", "the light of the shape '" + printable(light.name) + "' has a name in use",
-                             "another name of the shape or of the other light"));
-  lights.insert(lights.end(), emitted.begin(), emitted.end());
+  std::set<std::string> names{"surroundings"};
+  for (const Light& light : lights) names.insert(light.name);
+  for (Light light : emitted) {
+    while (names.contains(light.name)) light.name += " emission";
+    lights.push_back(std::move(light));
+  }
 }
 
 void read_surroundings(const Value& value, std::vector<Light>& lights) {

@@ -45,8 +45,7 @@ void visit_photometric(Tree& root, const Visit& visit) {
       for (Tree& member : part.children[i].children) {
         const bool emits = is_lights ? std::ranges::find(kEmissions, member.key) != kEmissions.end()
                                      : member.key == kShapeEmission;
-        if (emits && unit_of(member))
-          visit(member, part.children[i], part.key + '.' + std::to_string(i));
+        if (emits && unit_of(member)) visit(member, part.children[i], part.key + '.' + std::to_string(i));
       }
   }
 }

@@ -36,7 +36,7 @@ void visit_members(Tree& object, std::string_view section, const std::string& pa
     if (!may_be_spectrum(info)) continue;
     const bool is_coefficient = info.type != ValueType::color;
     const bool emits = section.starts_with("light.") ? member.key != "strength"
-                                                         : section == "scene" || member.key == "emission";
+                                                     : section == "scene" || member.key == "emission";
     visit(member, info,
           is_coefficient ? Quantity::coefficient
           : emits        ? Quantity::emission

@@ -11,7 +11,8 @@ namespace opaline {
 namespace {
 
 constexpr double kFewestCells = 4096;  // of a surface with a texture
-constexpr double kEvenPart = .1;       // part of the samples spread by area alone, for dark texels beside bright ones
+constexpr double kEvenPart =
+    .1;  // part of the samples spread by area alone, for dark texels beside bright ones
 
 /// Cells of a triangle divided in rows parallel to its first side: `upper` ones point the other way.
 struct Cell {
@@ -102,8 +103,8 @@ EmittingSurface::Point EmittingSurface::sample(std::array<double, 2> unit_square
   const double rest = width > 0 ? std::clamp((unit_square[0] - begin) / width, 0., 1.) : .5;
   const std::uint32_t triangle = face_of_cell_[cell];
   const Face& face = faces_[triangle];
-  const auto [u, v] = in_cell(cell_at(int(cell - face.first_cell), face.divisions), face.divisions, rest,
-                              unit_square[1]);
+  const auto [u, v] =
+      in_cell(cell_at(int(cell - face.first_cell), face.divisions), face.divisions, rest, unit_square[1]);
   Point point = point_of(triangle, u, v);
   point.density = density_in(cell);
   return point;

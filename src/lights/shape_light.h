@@ -39,8 +39,7 @@ inline LightSample sample_channels(const ShapeLight& light, const Vec3f& point, 
   const double cosine = facing / distance;
   sample.distance =
       float(distance - std::min(double(light.surface->clearance()) / cosine, kMostCleared * distance));
-  weights =
-      light.surface->texel(emitter) * float(cosine / (d2 * emitter.density * samples));
+  weights = light.surface->texel(emitter) * float(cosine / (d2 * emitter.density * samples));
   sample.weight = channel_of(weights, light.channel);
   return sample;
 }
@@ -69,8 +68,7 @@ inline EmitterHit intersect_emitter(const ShapeLight& light, const Vec3f& origin
   float distance = far * kBeyond;
   const auto met = light.surface->first_met(origin, direction, 0, distance);
   if (!met) return {};
-  return {true, distance,
-          RgbF(in_channel(light.radiance, light.channel)) * light.surface->texel(*met)};
+  return {true, distance, RgbF(in_channel(light.radiance, light.channel)) * light.surface->texel(*met)};
 }
 
 inline RgbF background(const ShapeLight&, const Vec3f&) {

@@ -145,12 +145,12 @@ class Shader {
   }
 
   const RenderInput& input_;
-  std::vector<Light> lights_;            // recentred
-  std::vector<RgbF> emitted_;            // one per light
-  MetLights met_, seen_;                 // by any ray, by those of the camera
+  std::vector<Light> lights_;                        // recentred
+  std::vector<RgbF> emitted_;                        // one per light
+  MetLights met_, seen_;                             // by any ray, by those of the camera
   std::vector<std::vector<ShapeLight>> emitted_by_;  // one per shape; empty: no shape emits
-  std::vector<Light> unit_lights_;       // all with unit emission, if reflections are cacheable
-  std::vector<Appearance> appearances_;  // one per mesh
+  std::vector<Light> unit_lights_;                   // all with unit emission, if reflections are cacheable
+  std::vector<Appearance> appearances_;              // one per mesh
   SurfaceTextures textures_;
   PixelWidth ray_width_;  // for camera rays
   Fields fields_;

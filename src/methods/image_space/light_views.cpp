@@ -263,7 +263,8 @@ LightView view_from(const Bounds& box, const Vec3d& position, double spacing) {
 
 std::vector<FluxSample> seen_from_lights(const PrecomputeInput& input, const BodyPlan& body, double spacing) {
   std::vector<Light> lights;  // without trees of lights
-  for (const Light& light : input.scene.lights) lights.push_back(light_in_world(input.scene, input.world, light));
+  for (const Light& light : input.scene.lights)
+    lights.push_back(light_in_world(input.scene, input.world, light));
   const Bounds box = bounds(input.world, body.meshes);
   const Vec3d centre = .5 * (box.low + box.high);
   const Views views(input, body);
