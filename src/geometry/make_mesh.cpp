@@ -18,7 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kMostTriangles = 200'000'000;
-constexpr std::size_t kFewVertices = 1000;  // of a displaced mesh
+constexpr std::size_t kFewVertices = 1000;  // fewer in a displaced mesh: a hint
 
 struct SourceReader {
   const std::string& name;

@@ -19,7 +19,7 @@ struct ShapeContext {
   const std::vector<Medium>* media = nullptr;
   std::map<std::string, std::size_t> group_media{};  ///< filled while reading
   std::size_t shapes_read = 0;
-  std::vector<Light> lights{};  ///< of emitting shapes, filled while reading
+  std::vector<Light> lights{};  ///< lights of emitting shapes, filled while reading
 };
 
 /// Reads a list of two numbers.

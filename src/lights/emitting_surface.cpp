@@ -10,7 +10,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kFewestCells = 4096;  // of a surface with a texture
+constexpr double kFewestCells = 4096;  // on a surface with a texture
 constexpr double kEvenPart =
     .1;  // part of the samples spread by area alone, for dark texels beside bright ones
 

@@ -33,7 +33,7 @@ class EmittingSurface {
     std::uint32_t triangle = 0;
     float u = 0, v = 0;
     Vec3f position{}, normal{};  ///< normal: unit, of the triangle
-    double density = 0;          ///< of the samples, per area
+    double density = 0;          ///< density of the samples, per area
   };
   Point sample(std::array<double, 2> unit_square) const;
 
@@ -62,7 +62,7 @@ class EmittingSurface {
     Vec3f corner, u, v;
     double area;
     std::size_t first_cell;
-    int divisions;  // of each side: its square is the number of cells
+    int divisions;  // parts of each side: their square is the number of cells
   };
   std::vector<Face> faces_;
   std::vector<std::uint32_t> face_of_cell_;
