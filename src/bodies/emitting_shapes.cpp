@@ -19,7 +19,7 @@ EmittingSurface::Texels texels_of(const Texture& texture, const Shape& shape) {
                                std::holds_alternative<BoxShape>(shape.source) ||
                                std::holds_alternative<SlabShape>(shape.source);
   const std::optional<SolidSpace> space = is_solid(texture) || std::ranges::any_of(texture.details, is_solid)
-                                              ? std::optional(solid_space(shape.to_world))
+                                              ? std::optional(solid_space(solid_to_world(shape)))
                                               : std::nullopt;
   return
       [=](const World& world, std::uint32_t triangle, float u, float v, const std::array<Vec3f, 2>& sides) {

@@ -191,7 +191,7 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world)
                           std::holds_alternative<SlabShape>(shape.source);
     const std::vector<const Texture*> textures = textures_of(scene, shape);
     if (std::ranges::any_of(textures, [](const Texture* texture) { return is_solid(*texture); }))
-      own.space = solid_space(shape.to_world);
+      own.space = solid_space(solid_to_world(shape));
     is_empty_ = is_empty_ && !own.has_tint && textures.empty() && own.grain == nullptr &&
                 own.partly_opaque == nullptr;
     for (const Texture* texture : textures) check_tiles(*texture, world.meshes[m], shape.name);
@@ -351,7 +351,7 @@ void add_to_key(KeyBuilder& key, const Texture& texture) {
 void add_solid_space(KeyBuilder& key, const Scene& scene, std::size_t shape) {
   const auto solid = [](const Texture* texture) { return is_solid(*texture); };
   if (std::ranges::none_of(textures_of(scene, scene.shapes[shape]), solid)) return;
-  const Transform& space = scene.shapes[shape].to_world;
+  const Transform space = solid_to_world(scene.shapes[shape]);
   key.add(std::string("space")).add(space.x).add(space.y).add(space.z).add(space.translation);
 }
 

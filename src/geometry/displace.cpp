@@ -84,7 +84,7 @@ std::vector<float> mean_heights(const Mesh& mesh, const std::vector<std::array<f
 
 SourceMesh displaced(Mesh mesh, const Shape& shape) {
   const Texture& texture = *shape.displacement;
-  const std::vector<float> heights = is_solid(texture) ? solid_heights(mesh, texture, shape.to_world)
+  const std::vector<float> heights = is_solid(texture) ? solid_heights(mesh, texture, solid_to_world(shape))
                                                        : mean_heights(mesh, corner_heights(mesh, texture));
   SourceMesh moved;
   moved.positions = std::move(mesh.positions);

@@ -198,10 +198,12 @@ Shape read_shape(const Value& value, const std::string& name, ShapeContext& cont
   shape.source = read_source(reader, context, shape.place);
   if (transform) shape.to_world = read_transform(*transform, context.mm_per_unit);
   // A mesh file without a size in mm is in scene units.
-  const auto* mesh = std::get_if<MeshFile>(&shape.source);
-  if (mesh != nullptr && !mesh->fit_size)
+  auto* mesh = std::get_if<MeshFile>(&shape.source);
+  if (mesh != nullptr && !mesh->fit_size) {
+    mesh->mm_per_unit = context.mm_per_unit;
     for (Vec3d* axis : {&shape.to_world.x, &shape.to_world.y, &shape.to_world.z})
       *axis *= context.mm_per_unit;
+  }
   if (normals) shape.normals = static_cast<NormalMode>(normals->choice());
   read_surface(reader, context, shape);
   if (const auto visible = reader.find("visible")) shape.is_seen = visible->flag();
