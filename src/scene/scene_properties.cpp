@@ -57,7 +57,7 @@ bool is_solid(const Texture& texture) {
 Transform solid_to_world(const Shape& shape) {
   Transform to_world = shape.to_world;
   if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
-    for (Vec3d* axis : {&to_world.x, &to_world.y, &to_world.z}) *axis /= mesh->mm_per_unit;
+    for (Vec3d* axis : {&to_world.x, &to_world.y, &to_world.z}) *axis = *axis / mesh->mm_per_unit;
   return to_world;
 }
 
