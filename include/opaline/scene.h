@@ -219,7 +219,7 @@ struct MeshFile {
   std::optional<double> crease_angle{};
   /// Pose of a glTF asset; its part is then in the asset's space. None: at rest.
   std::optional<AnimationTime> pose{};
-  double mm_per_unit = 1;  ///< of its vertices, a factor of Shape::to_world; 1 with a fit_size
+  double mm_per_unit = 1;  ///< scale of its vertices, a factor of Shape::to_world; 1 with a fit_size
   int subdivide = 0;  ///< rounds of Loop subdivision, each with 4 times as many triangles; 0 to kMostRounds
   static constexpr int kMostRounds = 6;
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
