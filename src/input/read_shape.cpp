@@ -144,7 +144,8 @@ void read_emission(const Value& value, ShapeContext& context, Shape& shape) {
   ShapeLight light{.shape = context.shapes_read};
   read_textured(value, light.radiance, shape.emission_texture);
   if (shape.emission_texture) light.radiance = take_mean(*shape.emission_texture);
-  if (light.radiance == Rgb{}) return shape.emission_texture.reset();
+  // At some wavelengths of a spectrum it may be black, but scenes of all wavelengths have the same lights.
+  if (light.radiance == Rgb{} && value.wavelengths() == nullptr) return shape.emission_texture.reset();
   if (shape.catches_shadows) value.fail_key("cannot be combined with 'shadow_catcher'", "one of them");
   const std::size_t channels = shape.emission_texture ? 3 : 1;
   for (std::size_t c = 0; c < channels; ++c) {
