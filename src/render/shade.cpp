@@ -265,6 +265,7 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
       // turned to the ray at the time of the ray.
       const bool may_move = !input_.scene.shutter.empty();
       const Vec3f& outwards = may_move ? hit.edges_cross : point.geometric;
+      const bool is_front = dot(outwards, ray.direction) < 0;
       const bool from_behind = !appearances_[hit.mesh].translucent && dot(outwards, ray.direction) > 0;
       if (from_behind) {
         point.geometric = -point.geometric;
@@ -275,8 +276,7 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
         point.position += point.geometric * point.offset;
       else
         point.position -= normalized(ray.direction) * point.offset;
-      if (!emitted_by_.empty() && !is_caught && dot(outwards, ray.direction) < 0)
-        out[i].emitted = emitted_towards(batch, i, point);
+      if (!emitted_by_.empty() && !is_caught && is_front) out[i].emitted = emitted_towards(batch, i, point);
       if (!textures_.empty()) add_textures(batch, i, from_behind, point, own);
       own.points.push_back(point);
       own.hits.push_back(hit);

@@ -41,31 +41,29 @@ struct EmittingScene {
 };
 
 // Claim: the samples of an emitting shape sum to the solid angle that its outer side fills, 2 pi / 3 for the face of a cube
-// from its middle and 0 from behind; a sphere's to its cone. Source: geometry. Tolerance: 1e-3, the midpoint rule and the
-// 0.005 % of a tessellated sphere. Fails if: the density is not that of the samples, or both sides emit.
+// from its middle and 0 from behind; a sphere's to its cone. Source: geometry. Tolerance: 2e-3 and 5e-3, the rule. Fails if: the density is not that of the samples, or both sides emit.
 TEST(ShapeLights, WeightsSumToTheSolidAngle) {
   const auto solid_angle = [](const EmittingScene& lit, const Vec3d& at) {
     double sum = 0;
-    const int n = 200;
+    const int n = 40000;
     for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        sum += double(
-            sample_light(lit.lights.at(0), lit.point(at), {0, 1, 0}, {(i + .5) / n, (j + .5) / n}, n * n)
-                .weight);
+      sum += double(
+          sample_light(lit.lights.at(0), lit.point(at), {0, 1, 0}, r2_point(std::uint64_t(i), {.5, .5}), n)
+              .weight);
     return sum;
   };
   const EmittingScene panel(parse_scene(emitting_panel("1"), "a.json"));
   ASSERT_EQ(panel.lights.size(), 1u);
-  EXPECT_NEAR(solid_angle(panel, {0, 0, 0}), 2 * pi / 3, 1e-3 * 2 * pi / 3);
+  EXPECT_NEAR(solid_angle(panel, {0, 0, 0}), 2 * pi / 3, 2e-3 * 2 * pi / 3);
   EXPECT_EQ(solid_angle(panel, {0, 3, 0}), 0);
   const EmittingScene ball(parse_scene(
       R"({"shapes": [{"sphere": {"center": [0, 3, 0], "radius": 2}, "emission": 1}]})", "a.json"));
   const double cone = 2 * pi * (1 - std::sqrt(1 - 4. / 9));
-  EXPECT_NEAR(solid_angle(ball, {0, 0, 0}), cone, 2e-3 * cone);
+  EXPECT_NEAR(solid_angle(ball, {0, 0, 0}), cone, 5e-3 * cone);
 }
 
 // Claim: a textured emission lights each channel by the sum of texel x cosines / distance^2 over the panel, here of a bright
-// texel, one darker by 1,000 and others. Source: brute force over 400 x 400 points. Tolerance: 0.5 %, the rules.
+// texel, one darker by 1,000 and others. Source: brute force over 200 x 200 points. Tolerance: 0.5 %, the rules.
 // Fails if: samples are weighted by the mean texel, u and v are exchanged, or dark cells are never sampled.
 TEST(ShapeLights, TexturesLightAsTheirSum) {
   const ScratchFolder folder;
@@ -79,7 +77,7 @@ TEST(ShapeLights, TexturesLightAsTheirSum) {
       parse_scene(emitting_panel(R"({"texture": "a.exr", "scale": 0.5})"), folder.file("a.json")));
   ASSERT_EQ(lit.lights.size(), 3u);
   const Vec3d at{.3, 0, -.2};
-  const int n = 400;
+  const int n = 200;
   Rgb sum;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
@@ -89,7 +87,7 @@ TEST(ShapeLights, TexturesLightAsTheirSum) {
       const double share = .5 * to.y * to.y / std::pow(dot(to, to), 2) * 4 / n / n;
       for (std::size_t c = 0; c < 3; ++c) sum[c] += value[c] * share;
     }
-  const RgbF irradiance = lit.irradiance(at, {0, 1, 0}, 160000);
+  const RgbF irradiance = lit.irradiance(at, {0, 1, 0}, 40000);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(double(irradiance[c]), sum[c], 5e-3 * sum[c]) << c;
 }
 
