@@ -72,7 +72,7 @@ TEST(Emission, LightsAsAQuadLight) {
   for (const auto& [shape, settings, name, tolerance] :
        {std::tuple{floor + "}", R"("method": "lambert", "light_samples": 256)", "diffuse", .005},
         std::tuple{floor + R"(, "reflectance": 0.1, "specular_roughness": 0.4, "metalness": 0.5})",
-                   R"("method": "lambert", "light_samples": 256)", "glossy", .02},
+                   R"("method": "lambert", "light_samples": 256)", "glossy", .04},
         std::tuple{std::string(R"({"sphere": {"radius": 3}, "medium": "wax"})"),
                    R"("method": "hierarchical", "samples": 500, "light_samples": 256)", "hierarchical", .005},
         std::tuple{std::string(R"({"sphere": {"radius": 3}, "medium": "wax"})"),
