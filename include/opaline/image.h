@@ -20,6 +20,7 @@ struct Image {
   std::vector<std::pair<std::string, std::string>> metadata;
   /// Position of a crop in the full image: x0, y0 and the full width and height.
   int crop_x = 0, crop_y = 0, full_width = 0, full_height = 0;
+  double pixel_aspect = 1;  ///< width of a pixel over its height
 };
 
 struct WriteReport {

@@ -229,6 +229,7 @@ struct MeshFile {
   std::optional<double> crease_angle{};
   /// Pose of a glTF asset; its part is then in the asset's space. None: at rest.
   std::optional<AnimationTime> pose{};
+  double mm_per_unit = 1;  ///< scale of its vertices, a factor of Shape::to_world; 1 with a fit_size
   int subdivide = 0;  ///< rounds of Loop subdivision, each with 4 times as many triangles; 0 to kMostRounds
   static constexpr int kMostRounds = 6;
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
@@ -296,6 +297,8 @@ struct Shape {
   std::optional<Texture> reflectance_texture{};  ///< times the reflectance
   std::optional<Texture> normal_map{};           ///< its scale applies to the slopes
   std::optional<Texture> bump_map{};             ///< heights; its scale is in mm
+  std::optional<Texture> displacement{};         ///< heights moving the vertices; its scale is in mm
+  std::optional<Texture> emission_texture{};     ///< factor of the radiance of its ShapeLight
   std::optional<Gloss> gloss{};                  ///< specular reflection of an opaque shape; none: diffuse
   Fuzz fuzz{};                                   ///< fuzz of an opaque shape
   bool is_seen = true;                           ///< visible to camera rays
@@ -310,6 +313,8 @@ void for_each_textured(const Shape& shape, const Visit& visit) {
   visit(1.0, shape.normal_map, SurfacePart::normals);
   visit(1.0, shape.bump_map, SurfacePart::normals);
   for_each_textured(shape.fuzz, visit);
+  if (shape.displacement) visit(1.0, shape.displacement, SurfacePart::normals);
+  if (shape.emission_texture) visit(1.0, shape.emission_texture, SurfacePart::color);
   if (!shape.gloss) return;
   visit(shape.gloss->metalness, shape.gloss->metalness_texture, SurfacePart::color);
   visit(shape.gloss->roughness, shape.gloss->roughness_texture, SurfacePart::boundary);
@@ -387,9 +392,22 @@ struct ManyLights {
   std::optional<std::size_t> channel;  ///< its only channel; none: all lights have one colour
   friend bool operator==(const ManyLights&, const ManyLights&) = default;
 };
+class EmittingSurface;
+/// Light emitted by a shape, on the outer side of its surface. Its texture is Shape::emission_texture; a
+/// coloured one becomes three lights of one name, one per channel.
+struct ShapeLight {
+  static constexpr std::string_view kType = "shape";
+  static constexpr bool kCanBeSeen = false;  ///< as its shape
+  std::size_t shape = 0;                     ///< index into Scene::shapes
+  Rgb radiance;                              ///< times the texture
+  std::optional<std::size_t> channel;        ///< its only channel; none: the texture is grey
+  /// Its triangles in the world's space, added by light_in_world (bodies/body.h); null in a Scene.
+  std::shared_ptr<const EmittingSurface> surface{};
+  friend bool operator==(const ShapeLight&, const ShapeLight&) = default;
+};
 
 using LightSource = std::variant<PointLight, SpotLight, DirectionalLight, SphereLight, QuadLight,
-                                 Surroundings, EnvironmentLight, ManyLights>;
+                                 Surroundings, EnvironmentLight, ManyLights, ShapeLight>;
 
 struct Light {
   std::string name;  ///< equal for the channels of one image
@@ -415,6 +433,7 @@ struct Camera {
 struct Film {
   std::array<int, 2> resolution{512, 512};  ///< width, height
   std::optional<std::array<int, 4>> crop;   ///< x0, y0, x1, y1 in pixels, upper ends excluded; from top left
+  double pixel_aspect = 1;                  ///< width of a pixel over its height
   int samples_per_pixel = 1;
   PixelFilter filter =
       PixelFilter::box;  ///< box of one pixel; gaussian of standard deviation 0.5, radius 1.5

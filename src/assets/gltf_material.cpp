@@ -131,6 +131,7 @@ class MaterialTranslator {
       surface.keys["normal_map"] = std::move(*normals);
       translated("normalTexture: " + tangents());
     }
+    add_emission(surface.keys);
     tell_losses(!surface.medium.is_null());
     return surface;
   }
@@ -158,7 +159,8 @@ class MaterialTranslator {
     }
     try {
       std::string warning;
-      const bool is_color = name == base_.color_texture_name || name.ends_with("ColorTexture");
+      const bool is_color =
+          name == base_.color_texture_name || name == "emissiveTexture" || name.ends_with("ColorTexture");
       Json json = texture_json(gltf_, info, use_.uv_set, use_.mesh_path, is_color, scene_.textures, warning);
       if (!warning.empty()) warn(name + ' ' + warning);
       translated(name + " -> " + json["texture"].get<std::string>());
@@ -208,6 +210,19 @@ class MaterialTranslator {
                            has(kSpecularGlossiness) ? "diffuseFactor, specularFactor, glossinessFactor"
                                                     : "baseColorFactor, metallicFactor, roughnessFactor",
                            short_triple(surface.reflectance), metalness, roughness));
+  }
+
+  /// Candela per square metre become W/(mm^2 sr), as the lux of the asset's lights become W/mm^2. An unusable texture
+  /// leaves the surface dark: most of it usually is.
+  void add_emission(Json& keys) {
+    const double strength = values("KHR_materials_emissive_strength").number("emissiveStrength", 1);
+    const Vec3d radiance = color_of(material_, "emissiveFactor", Vec3d(0)) * strength;
+    if (radiance == Vec3d(0)) return;
+    const GltfRecord info = material_.record("emissiveTexture");
+    std::optional<Json> picture = texture(info, "emissiveTexture");
+    if (!picture && info.index("index") != kNoRecord) return not_carried("emissiveFactor");
+    keys["emission"] = times(std::move(picture), triple_json(radiance), triple_json(Vec3d(1)));
+    translated("emissiveFactor -> emission " + short_triple(radiance));
   }
 
   /// Keeps both alphas exact: returns the factor's roughness without anisotropy.
@@ -415,14 +430,10 @@ class MaterialTranslator {
       if (!carried_.contains(name) && exists(owner.record(name.c_str()), name))
         not_carried("texture " + name);
     };
-    for (const char* name : {"occlusionTexture", "emissiveTexture"})
-      if (material_.record(name).index("index") != kNoRecord) add(material_, name);
+    if (material_.record("occlusionTexture").index("index") != kNoRecord) add(material_, "occlusionTexture");
     for (const std::string& extension : extensions_.keys())
       for (const std::string& key : values(extension.c_str()).keys())
         if (key.ends_with("Texture")) add(values(extension.c_str()), key);
-    const std::vector<double> emissive = material_.numbers("emissiveFactor", 3);
-    if (!emissive.empty() && emissive != std::vector<double>{0, 0, 0})
-      warn("emissiveFactor: ignored, emission is not supported");
     tell_alpha();
     tell_extensions(is_translucent);
   }
@@ -446,10 +457,10 @@ class MaterialTranslator {
   void tell_extensions(bool is_translucent) {
     constexpr std::array<std::string_view, 3> of_volume{"KHR_materials_transmission", "KHR_materials_volume",
                                                         "KHR_materials_diffuse_transmission"};
-    constexpr std::array<std::string_view, 7> read{kSpecularGlossiness,      "KHR_materials_anisotropy",
-                                                   "KHR_materials_ior",      "KHR_materials_sheen",
-                                                   "KHR_materials_specular", "KHR_materials_volume_scatter",
-                                                   "KHR_materials_scatter"};
+    constexpr std::array<std::string_view, 8> read{
+        kSpecularGlossiness,     "KHR_materials_anisotropy",       "KHR_materials_ior",
+        "KHR_materials_sheen",   "KHR_materials_specular",         "KHR_materials_volume_scatter",
+        "KHR_materials_scatter", "KHR_materials_emissive_strength"};
     for (const std::string& name : extensions_.keys()) {
       if (std::ranges::find(read, name) != read.end()) continue;
       if (std::ranges::find(of_volume, name) == of_volume.end())

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -159,6 +160,8 @@ class ObjImporter {
     std::optional<Vec3d> color;
     std::optional<Picture> picture;
     std::optional<Bump> bump;
+    Vec3d emission{0, 0, 0};
+    std::optional<Picture> emission_picture;
     std::vector<std::string> unused;  ///< statements without an analogue, each once
   };
 
@@ -244,20 +247,23 @@ class ObjImporter {
   Surface surface_of(const MtlMaterial& material) {
     Surface surface;
     surface.color = kGrey;
-    std::vector<MtlStatement> emission, transparency, textures;
+    std::vector<MtlStatement> transparency, textures;
     for (const MtlStatement& statement : material.statements) {
       const MtlUse use = use_of(statement);
-      const bool needs_uvs = use == MtlUse::color_map || use == MtlUse::bump || use == MtlUse::normal_map;
+      const bool needs_uvs = use == MtlUse::color_map || use == MtlUse::emission_map || use == MtlUse::bump ||
+                             use == MtlUse::normal_map;
       if (needs_uvs && !has_uvs_)
         add_unused(surface, statement.keyword + " (the mesh has no UVs)");
       else if (use == MtlUse::color)
         take_color(material, statement, surface);
       else if (use == MtlUse::color_map)
-        take_picture(material, statement, surface);
+        take_picture(material, statement, surface.picture);
+      else if (use == MtlUse::emission_map)
+        take_picture(material, statement, surface.emission_picture);
       else if (needs_uvs)
         take_bump(material, statement, surface);
       else if (use == MtlUse::emission)
-        emission.push_back(statement);
+        take_emission(material, statement, surface);
       else if (use == MtlUse::transparency)
         transparency.push_back(statement);
       else if (use == MtlUse::without_analogue && in_lower_case(statement.keyword).starts_with("map_"))
@@ -269,9 +275,8 @@ class ObjImporter {
              "the statement " + in_quotes(statement.keyword) + " of " + material_label(material.name) +
                  " is unknown and ignored" + mtl_suggestion(statement.keyword));
     }
-    warn_of_ignored(material, emission, "emission is not supported");
     warn_of_ignored(material, transparency, "transparency is not supported; the surface renders opaque");
-    warn_of_ignored(material, textures, "the supported textures are map_Kd, bump and norm");
+    warn_of_ignored(material, textures, "the supported textures are map_Kd, map_Ke, bump and norm");
     return surface;
   }
 
@@ -282,6 +287,12 @@ class ObjImporter {
   void take_color(const MtlMaterial& material, const MtlStatement& statement, Surface& surface) {
     const auto& [value, complaint] = read_mtl_color(statement.text);
     if (value) surface.color = value;
+    if (!complaint.empty()) warn(material, statement, complaint);
+  }
+
+  void take_emission(const MtlMaterial& material, const MtlStatement& statement, Surface& surface) {
+    const auto& [value, complaint] = read_mtl_color(statement.text, std::numeric_limits<double>::infinity());
+    if (value) surface.emission = *value;
     if (!complaint.empty()) warn(material, statement, complaint);
   }
 
@@ -331,13 +342,14 @@ class ObjImporter {
     }
   }
 
-  void take_picture(const MtlMaterial& material, const MtlStatement& statement, Surface& surface) {
+  void take_picture(const MtlMaterial& material, const MtlStatement& statement,
+                    std::optional<Picture>& picture) {
     const MtlTexture texture = read_mtl_texture(statement.text);
     std::string file;
     Json json = texture_of(material, statement, texture, file);
     if (json.is_null()) return;
     if (opened(material, statement, texture, file, true) != nullptr)
-      surface.picture = {std::move(json), texture.gain};
+      picture = {std::move(json), texture.gain};
   }
 
   /// The value of -bm is the height of white, in the OBJ's unit. Some programs write normal maps here,
@@ -367,6 +379,7 @@ class ObjImporter {
     if (const Json reflectance = reflectance_of(material, surface); !reflectance.is_null())
       scene_.shapes.back()["reflectance"] = reflectance;
     if (surface.bump) add_bump(material, *surface.bump);
+    add_emission(material, surface);
     if (!surface.unused.empty())
       scene_.not_carried.push_back(material_label(material) + ": " + in_a_row(surface.unused) +
                                    (surface.unused.size() == 1 ? " is" : " are") + " ignored");
@@ -380,6 +393,22 @@ class ObjImporter {
                                             bump.key == "bump_map"
                                                 ? fmt::format("white {:.4g} mm high", scale)
                                                 : fmt::format("slopes times {:.4g}", scale)));
+  }
+
+  /// Beside an image, black counts as white, as for Kd.
+  void add_emission(const std::string& material, const Surface& surface) {
+    const bool is_white = surface.emission_picture && surface.emission == Vec3d(0);
+    const Vec3d radiance = is_white ? Vec3d(1) : surface.emission;
+    if (radiance == Vec3d(0)) return;
+    Json emission = triple_json(radiance);
+    if (surface.emission_picture) {
+      emission = surface.emission_picture->texture;
+      emission["scale"] = triple_json(radiance * surface.emission_picture->gain);
+    }
+    scene_.shapes.back()["emission"] = std::move(emission);
+    scene_.translated.push_back(fmt::format("{}: {} -> emission {}", material_label(material),
+                                            surface.emission_picture ? "map_Ke" : "Ke",
+                                            short_triple(radiance)));
   }
 
   /// Null: the vertices have it.

@@ -87,7 +87,8 @@ MtlUse use_of(const MtlStatement& statement) {
   if (keyword == "norm" || keyword == "map_norm") return MtlUse::normal_map;
   if (!is_known(keyword)) return MtlUse::unknown;
   if (has_no_effect(keyword, statement.text)) return MtlUse::no_effect;
-  if (keyword == "ke" || keyword == "map_ke") return MtlUse::emission;
+  if (keyword == "ke") return MtlUse::emission;
+  if (keyword == "map_ke") return MtlUse::emission_map;
   for (const char* other : {"d", "tr", "tf", "map_d", "map_tr", "map_tf"})
     if (keyword == other) return MtlUse::transparency;
   return MtlUse::without_analogue;
@@ -97,20 +98,23 @@ std::string mtl_suggestion(const std::string& keyword) {
   return did_you_mean(keyword, kKeywords);
 }
 
-MtlColor read_mtl_color(std::string_view text) {
+MtlColor read_mtl_color(std::string_view text, double most) {
   std::vector<double> numbers;
   for (std::string_view word = next_word(text); !word.empty() && word[0] != '#'; word = next_word(text)) {
     const std::optional<double> number = number_of(word);
-    if (!number) return {{}, "is not a colour of one or three numbers from 0 to 1 and is ignored"};
+    if (!number)
+      return {{},
+              std::isfinite(most) ? "is not a colour of one or three numbers from 0 to 1 and is ignored"
+                                  : "is not a colour of one or three numbers and is ignored"};
     numbers.push_back(*number);
   }
   if (numbers.size() != 1 && numbers.size() != 3)
     return {{}, fmt::format("has {} numbers instead of one or three and is ignored", numbers.size())};
   const Vec3d given = numbers.size() == 1 ? Vec3d(numbers[0]) : Vec3d(numbers[0], numbers[1], numbers[2]);
-  const Vec3d value = component_min(component_max(given, Vec3d(0)), Vec3d(1));
+  const Vec3d value = component_min(component_max(given, Vec3d(0)), Vec3d(most));
   if (value == given) return {value, {}};
   const bool is_below = min_component(given) < 0;
-  const bool is_above = max_component(given) > 1;
+  const bool is_above = max_component(given) > most;
   std::string complaint = std::string("is ") + (is_below ? "below 0" : "") +
                           (is_below && is_above ? " and " : "") + (is_above ? "above 1" : "") +
                           " and is clamped to " + rounded(value);

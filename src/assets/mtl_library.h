@@ -39,7 +39,8 @@ enum class MtlUse {
   color_map,         ///< map_Kd
   bump,              ///< bump, map_bump
   normal_map,        ///< norm
-  emission,          ///< Ke, map_Ke
+  emission,          ///< Ke
+  emission_map,      ///< map_Ke
   transparency,      ///< d, Tr, Tf and their maps
   no_effect,         ///< default values, and options of other statements
   without_analogue,  ///< would change the surface
@@ -52,13 +53,13 @@ MtlUse use_of(const MtlStatement& statement);
 /// " (did you mean 'map_Kd'?)", or nothing.
 std::string mtl_suggestion(const std::string& keyword);
 
-/// A colour between 0 and 1. One number applies to all three.
+/// A colour between 0 and `most`. One number applies to all three.
 /// from  Wavefront, MTL material format 4.2: "the g and b are optional; if only r is specified, g and b equal
 ///       r"
 struct MtlColor {
   std::optional<Vec3d> value;  ///< none: the text is not a colour
   std::string complaint;       ///< about the text, a verb phrase; empty: none
 };
-MtlColor read_mtl_color(std::string_view text);
+MtlColor read_mtl_color(std::string_view text, double most = 1);
 
 }  // namespace opaline

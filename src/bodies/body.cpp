@@ -47,7 +47,7 @@ std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::si
 
 std::vector<Light> recentred_lights(const Scene& scene, const World& world) {
   std::vector<Light> lights;
-  for (const Light& light : scene.lights) lights.push_back(recentred(light, world.origin, world.unit));
+  for (const Light& light : scene.lights) lights.push_back(light_in_world(scene, world, light));
   return with_trees(std::move(lights));
 }
 

@@ -55,6 +55,8 @@ std::uint64_t point_irradiance_seed(const Settings& settings);
 std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::size_t group,
                                            std::span<const SurfaceSample> samples,
                                            std::span<const Light> lights);
+/// A light of the scene in the world's space and unit; that of a shape with its surface.
+Light light_in_world(const Scene& scene, const World& world, const Light& light);
 /// The scene's lights in the world's space and unit, with trees (ManyLights) for many lights.
 std::vector<Light> recentred_lights(const Scene& scene, const World& world);
 

@@ -7,6 +7,7 @@
 
 #include "core/cancel_check.h"
 #include "image/texture_file.h"
+#include "image/uv_lookup.h"
 #include "opaline/error.h"
 #include "scene/scene_properties.h"
 #include "scene/source_place.h"
@@ -14,27 +15,12 @@
 namespace opaline {
 namespace {
 
-bool maps_uvs_unchanged(const Texture& texture) {
-  return texture.uv_offset == std::array<double, 2>{0, 0} &&
-         texture.uv_scale == std::array<double, 2>{1, 1} && texture.uv_rotation == 0;
-}
-
-/// UVs count from the lower left corner, textures from the upper left one.
 TexturePlace texture_place(const Texture& texture, const SurfaceUv& at, const Footprint& footprint,
                            bool on_whole_face = false) {
-  const double angle = texture.uv_rotation * std::numbers::pi / 180;
-  const double cosine = std::cos(angle), sine = std::sin(angle);
-  const auto turned = [&](double u, double v) {
-    const double x = u * texture.uv_scale[0], y = v * texture.uv_scale[1];
-    return std::array<double, 2>{cosine * x + sine * y, cosine * y - sine * x};
-  };
   const auto side = [&](const Vec3f& along) {
-    const auto [u, v] = turned(double(dot(at.gradient_u, along)), -double(dot(at.gradient_v, along)));
-    return std::array<float, 2>{float(u), float(v)};
+    return std::array<double, 2>{double(dot(at.gradient_u, along)), double(dot(at.gradient_v, along))};
   };
-  const auto [u, v] = turned(double(at.uv[0]), 1 - double(at.uv[1]));
-  return {float(u + texture.uv_offset[0]), float(v + texture.uv_offset[1]), side(footprint.x),
-          side(footprint.y), on_whole_face && maps_uvs_unchanged(texture)};
+  return uv_lookup(texture, at.uv, {side(footprint.x), side(footprint.y)}, on_whole_face);
 }
 
 std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Place& place) {
@@ -58,22 +44,6 @@ RgbF overlaid(const RgbF& color, const RgbF& detail) {
                           : 1 - 2 * (1 - s) * (1 - d);
   }
   return result;
-}
-
-RgbF color_of(const Texture& texture, const SurfaceTextures::Place& place) {
-  std::array<float, 4> texel = looked_up(texture, place);
-  if (texture.from_rgb) {
-    const Rgb mixed = at_wavelengths(texture, {double(texel[0]), double(texel[1]), double(texel[2])});
-    for (std::size_t c = 0; c < 3; ++c) texel[c] = float(mixed[c]);
-  }
-  RgbF color;
-  for (std::size_t c = 0; c < 3; ++c) color[c] = std::max(0.0f, texel[c]);
-  for (const Texture& detail : texture.details)
-    if (detail.blend == DetailBlend::overlay) color = overlaid(color, color_of(detail, place));
-  color = color * RgbF(texture.scale);
-  for (const Texture& detail : texture.details)
-    if (detail.blend == DetailBlend::relative) color = color * color_of(detail, place);
-  return texture.is_relative ? color : component_min(color, RgbF(1));
 }
 
 // Zero at one half.
@@ -230,7 +200,7 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world)
                           std::holds_alternative<SlabShape>(shape.source);
     const std::vector<const Texture*> textures = textures_of(scene, shape);
     if (std::ranges::any_of(textures, [](const Texture* texture) { return is_solid(*texture); }))
-      own.space = solid_space(shape.to_world);
+      own.space = solid_space(solid_to_world(shape));
     is_empty_ = is_empty_ && !own.has_tint && textures.empty() && own.grain == nullptr &&
                 own.partly_opaque == nullptr;
     for (const Texture* texture : textures) check_tiles(*texture, world.meshes[m], shape.name);
@@ -263,7 +233,7 @@ SurfaceTint SurfaceTextures::tint(const Place& place) const {
   const float weight = own.partly_opaque == nullptr ? 1 : float(own.partly_opaque->subsurface_weight);
   if (!own.has_tint) return {.leaving = RgbF(weight)};
   RgbF tint(own.factor);
-  if (own.tint != nullptr) tint = tint * color_of(*own.tint, place);
+  if (own.tint != nullptr) tint = tint * color_at(*own.tint, place);
   if (own.has_colors) tint = tint * place.color;
   tint *= number_at(own.weight, place).value_or(1);
   SurfaceTint result{powered(tint, own.at_entry), powered(tint, own.at_exit)};
@@ -276,7 +246,7 @@ RgbF SurfaceTextures::reflected(const Place& place) const {
   if (own.partly_opaque == nullptr) return {};
   const float scattered = number_at(own.weight, place).value_or(float(own.partly_opaque->subsurface_weight));
   RgbF base(own.partly_opaque->base_color);
-  if (own.base != nullptr) base = base * color_of(*own.base, place);
+  if (own.base != nullptr) base = base * color_at(*own.base, place);
   if (own.has_colors) base = base * place.color;
   return base * (1 - scattered);
 }
@@ -284,9 +254,40 @@ RgbF SurfaceTextures::reflected(const Place& place) const {
 MediumFactors SurfaceTextures::medium(const Place& place) const {
   const OfMesh& own = of_mesh_[place.mesh];
   MediumFactors factors;
-  if (own.color_inside != nullptr) factors.color = color_of(*own.color_inside, place);
-  if (own.radius_inside != nullptr) factors.radius = color_of(*own.radius_inside, place);
+  if (own.color_inside != nullptr) factors.color = color_at(*own.color_inside, place);
+  if (own.radius_inside != nullptr) factors.radius = color_at(*own.radius_inside, place);
   return factors;
+}
+
+SolidPlace solid_place(const SolidSpace& space, const World& world, std::uint32_t mesh,
+                       std::uint32_t triangle, float u, float v, const std::array<Vec3f, 2>& sides) {
+  const Mesh& surface = world.meshes[mesh];
+  std::array<Vec3d, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k)
+    corners[k] = out_of_world(world, Vec3d(surface.positions[surface.triangles[triangle][k]]));
+  const auto inside = [&](const Vec3d& outside) {
+    return Vec3d{dot(space.x, outside), dot(space.y, outside), dot(space.z, outside)};
+  };
+  const Vec3d side_u = inside(corners[1] - corners[0]), side_v = inside(corners[2] - corners[0]);
+  return {inside(corners[0] - space.origin) + side_u * double(u) + side_v * double(v),
+          normalized(cross(side_u, side_v)), inside(Vec3d(sides[0]) * world.unit),
+          inside(Vec3d(sides[1]) * world.unit)};
+}
+
+RgbF color_at(const Texture& texture, const SurfaceTextures::Place& place) {
+  std::array<float, 4> texel = looked_up(texture, place);
+  if (texture.from_rgb) {
+    const Rgb mixed = at_wavelengths(texture, {double(texel[0]), double(texel[1]), double(texel[2])});
+    for (std::size_t c = 0; c < 3; ++c) texel[c] = float(mixed[c]);
+  }
+  RgbF color;
+  for (std::size_t c = 0; c < 3; ++c) color[c] = std::max(0.0f, texel[c]);
+  for (const Texture& detail : texture.details)
+    if (detail.blend == DetailBlend::overlay) color = overlaid(color, color_at(detail, place));
+  color = color * RgbF(texture.scale);
+  for (const Texture& detail : texture.details)
+    if (detail.blend == DetailBlend::relative) color = color * color_at(detail, place);
+  return texture.is_relative ? color : component_min(color, RgbF(1));
 }
 
 std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Place& place) {
@@ -296,7 +297,7 @@ std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Pl
 
 std::optional<RgbF> color_at(const Texture* texture, const SurfaceTextures::Place& place) {
   if (texture == nullptr) return {};
-  return color_of(*texture, place);
+  return color_at(*texture, place);
 }
 
 Vec3f SurfaceTextures::tangent(const Place& place, const SurfacePoint& point) const {
@@ -378,7 +379,7 @@ void add_to_key(KeyBuilder& key, const Texture& texture) {
 void add_solid_space(KeyBuilder& key, const Scene& scene, std::size_t shape) {
   const auto solid = [](const Texture* texture) { return is_solid(*texture); };
   if (std::ranges::none_of(textures_of(scene, scene.shapes[shape]), solid)) return;
-  const Transform& space = scene.shapes[shape].to_world;
+  const Transform space = solid_to_world(scene.shapes[shape]);
   key.add(std::string("space")).add(space.x).add(space.y).add(space.z).add(space.translation);
 }
 

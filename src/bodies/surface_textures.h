@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "bodies/solid_textures.h"
 #include "cache/stage_key.h"
 #include "geometry/surface_point.h"
 #include "geometry/surface_uv.h"
 #include "geometry/world.h"
+#include "image/solid_lookup.h"
 #include "sampling/sample_surface.h"
 
 namespace opaline {
@@ -90,6 +90,12 @@ class SurfaceTextures {
   bool is_empty_ = true;
 };
 
+/// in    u, v: barycentrics of the triangle's second and third corner; sides: of the footprint, world units
+SolidPlace solid_place(const SolidSpace& space, const World& world, std::uint32_t mesh,
+                       std::uint32_t triangle, float u, float v, const std::array<Vec3f, 2>& sides);
+
+/// Colour of a texture at a point, with its details.
+RgbF color_at(const Texture& texture, const SurfaceTextures::Place& place);
 /// Number of a texture; none: no texture.
 std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Place& place);
 /// The same for a colour.

@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "geometry/builtin_shapes.h"
 #include "geometry/check_mesh.h"
+#include "geometry/displace.h"
 #include "geometry/read_mesh.h"
 #include "geometry/shape_label.h"
 #include "geometry/subdivide.h"
@@ -17,6 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr std::size_t kMostTriangles = 200'000'000;
+constexpr std::size_t kFewVertices = 1000;  // fewer in a displaced mesh: a hint
 
 struct SourceReader {
   const std::string& name;
@@ -126,6 +128,28 @@ SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs)
   return mesh;
 }
 
+/// Checks the mesh before, for normals on its outside, and after its vertices have moved.
+CheckedMesh make_displaced(const Shape& shape, SourceMesh mesh, CheckSettings settings, CheckMemory* memory) {
+  const double crease_angle = mesh.smoothing.crease_angle;
+  mesh.normals.clear();
+  mesh.smoothing = {};
+  const bool is_smooth = std::exchange(settings.smooth, true);
+  CheckedMesh before = check_mesh(std::move(mesh), settings, memory);
+  SourceMesh moved = displaced(std::move(before.mesh), shape);
+  moved.smoothing.crease_angle = crease_angle;
+  settings.smooth = is_smooth;
+  settings.fill_holes = FillHoles::none;
+  CheckedMesh after = check_mesh(std::move(moved), settings);
+  const std::size_t dropped = after.report.zero_area_dropped;
+  after.report = std::move(before.report);
+  after.report.zero_area_dropped += dropped;
+  if (after.mesh.positions.size() < kFewVertices)
+    after.report.warnings.push_back(
+        settings.name + ": displacement moves " + std::to_string(after.mesh.positions.size()) +
+        " vertices alone; a finer mesh shows more of it, such as a file with a larger 'subdivide'");
+  return after;
+}
+
 CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh mesh, CheckMemory* memory) {
   CheckSettings settings;
   settings.name = name;
@@ -137,6 +161,7 @@ CheckedMesh make_mesh(const Shape& shape, const std::string& name, SourceMesh me
   else if (shape.medium)
     settings.fill_holes = FillHoles::if_small;
   place(mesh, shape.to_world, name);
+  if (shape.displacement) return make_displaced(shape, std::move(mesh), settings, memory);
   return check_mesh(std::move(mesh), settings, memory);
 }
 

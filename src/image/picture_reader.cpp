@@ -38,6 +38,8 @@ Image describe(const OIIO::ImageSpec& spec) {
   image.crop_y = spec.y - spec.full_y;
   image.full_width = spec.full_width;
   image.full_height = spec.full_height;
+  if (const double aspect = double(spec.get_float_attribute("PixelAspectRatio", 1)); aspect > 0)
+    image.pixel_aspect = aspect;
   copy_metadata(spec, image);
   return image;
 }

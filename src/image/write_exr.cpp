@@ -110,6 +110,7 @@ Imf::Header make_header(const Image& image, const std::vector<FileChannel>& chan
   const int width = image.full_width > 0 ? image.full_width : image.width,
             height = image.full_height > 0 ? image.full_height : image.height;
   Imf::Header header({{0, 0}, {width - 1, height - 1}}, data_window(image));
+  header.pixelAspectRatio() = float(image.pixel_aspect);
   header.compression() = Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = 1;  // slightly larger files than at the default level 4, but faster
   for (const FileChannel& channel : channels)

@@ -96,6 +96,16 @@ std::vector<Light> by_channel(const std::vector<Light>& lights) {
   return split;
 }
 
+/// A light of a shape has the shape's name, with an addition if another light has it.
+void add_lights_of_shapes(const std::vector<Light>& emitted, std::vector<Light>& lights) {
+  std::set<std::string> names{"surroundings"};
+  for (const Light& light : lights) names.insert(light.name);
+  for (Light light : emitted) {
+    while (names.contains(light.name)) light.name += " emission";
+    lights.push_back(std::move(light));
+  }
+}
+
 void read_surroundings(const Value& value, std::vector<Light>& lights) {
   const Rgb radiance = value.color();
   if (radiance != Rgb{}) lights.push_back({"surroundings", Surroundings{radiance}, value.place()});
@@ -171,7 +181,7 @@ Scene read_scene(const Document& document) {
   if (const auto media = reader.find("media"))
     for (std::size_t i = 0; i < scene.media.size(); ++i)
       read_layers(media->members()[i], mm_per_unit, scene.media, scene.media[i]);
-  ShapeContext context{mm_per_unit, &scene.media, {}};
+  ShapeContext context{.mm_per_unit = mm_per_unit, .media = &scene.media};
   scene.shapes = read_named<Shape>(
       reader.find("shapes"), "shape",
       [&](const Value& value, const std::string& name) { return read_shape(value, name, context); });
@@ -180,6 +190,7 @@ Scene read_scene(const Document& document) {
   scene.lights = by_channel(read_named<Light>(
       reader.find("lights"), "light",
       [&](const Value& value, const std::string& name) { return read_light(value, name, mm_per_unit); }));
+  add_lights_of_shapes(context.lights, scene.lights);
   if (const auto surroundings = reader.find("surroundings")) read_surroundings(*surroundings, scene.lights);
   if (const auto backdrop = reader.find("backdrop")) scene.backdrop = backdrop->color();
   scene.camera = read_camera(reader.find("camera"), mm_per_unit);

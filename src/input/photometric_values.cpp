@@ -23,6 +23,7 @@ constexpr double kLumensPerWatt = 683, kSquareMillimetres = 1e6;  // in a square
 constexpr Rgb kLuminance{.21263901, .71516868, .07219231};        // linear Rec.709
 
 constexpr std::array<std::string_view, 3> kEmissions{"intensity", "irradiance", "radiance"};
+constexpr std::string_view kShapeEmission = "emission";
 
 const Node* unit_of(const Node& node) {
   if (node.kind != Node::Kind::object) return nullptr;
@@ -31,18 +32,21 @@ const Node* unit_of(const Node& node) {
   return nullptr;
 }
 
-/// Calls visit(value's node, light) for each such value; light: null for the surroundings.
+/// Calls visit(value's node, light or shape) for each such value; the node itself for the surroundings.
 /// Tree: Node or const Node
 template <class Tree, class Visit>
 void visit_photometric(Tree& root, const Visit& visit) {
   if (root.kind != Node::Kind::object) return;
   for (Tree& part : root.children) {
     if (part.key == "surroundings" && unit_of(part)) visit(part, part, std::string("surroundings"));
-    if (part.key != "lights") continue;
+    const bool is_lights = part.key == "lights";
+    if (!is_lights && part.key != "shapes") continue;
     for (std::size_t i = 0; i < part.children.size(); ++i)
-      for (Tree& member : part.children[i].children)
-        if (std::ranges::find(kEmissions, member.key) != kEmissions.end() && unit_of(member))
-          visit(member, part.children[i], "lights." + std::to_string(i));
+      for (Tree& member : part.children[i].children) {
+        const bool emits = is_lights ? std::ranges::find(kEmissions, member.key) != kEmissions.end()
+                                     : member.key == kShapeEmission;
+        if (emits && unit_of(member)) visit(member, part.children[i], part.key + '.' + std::to_string(i));
+      }
   }
 }
 
@@ -126,17 +130,21 @@ void replace_by_scale(const Document& document, const std::string& path, const K
   node.children.push_back(number_node(node, "scale", own > 0 ? luminance / own : 0));
 }
 
+/// Section of the schema: of a light, of a shape, or of the scene.
+std::string section_of(const Node& node, const Node& owner) {
+  if (&owner == &node) return "scene";
+  if (node.key == kShapeEmission) return "shape";
+  const Node* const type = find_member(owner, "type");
+  return "light." + (type != nullptr ? type->text : "");
+}
+
 void resolve(const Document& document, Node& node, const Node& owner, const std::string& path) {
-  const bool is_light = &owner != &node;
-  std::string section;
-  if (is_light) {
-    const Node* const type = find_member(owner, "type");
-    section = "light." + (type != nullptr ? type->text : "");
-    const std::span<const std::string_view> keys = section_keys(section);
-    if (std::ranges::find(keys, node.key) == keys.end()) return;  // reported when the light is read
-  }
-  const KeyInfo& info = is_light ? key_info(section, node.key) : key_info("scene", "surroundings");
-  const std::string full_path = is_light ? path + '.' + node.key : path;
+  const std::string section = section_of(node, owner);
+  const bool is_light = section.starts_with("light.");
+  const std::span<const std::string_view> keys = section_keys(section);
+  if (std::ranges::find(keys, node.key) == keys.end()) return;  // reported when the light is read
+  const KeyInfo& info = key_info(section, node.key);
+  const std::string full_path = section == "scene" ? path : path + '.' + node.key;
   const Value value(document, node, full_path, info);
   const ObjectReader reader(value, "spectrum");
   const Value unit = reader.need(reader.exactly_one_of(kPhotometricUnits));

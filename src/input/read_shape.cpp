@@ -138,6 +138,22 @@ void read_gloss(const ObjectReader& reader, Shape& shape) {
   if (weight) gloss.eta = weighted_ior(gloss.eta, std::max(weight->number(), kTrace));
 }
 
+/// Adds the light of an emitting shape.
+/// in    shape: complete otherwise
+void read_emission(const Value& value, ShapeContext& context, Shape& shape) {
+  ShapeLight light{.shape = context.shapes_read};
+  read_textured(value, light.radiance, shape.emission_texture);
+  if (shape.emission_texture) light.radiance = take_mean(*shape.emission_texture);
+  // At some wavelengths of a spectrum it may be black, but scenes of all wavelengths have the same lights.
+  if (light.radiance == Rgb{} && value.wavelengths() == nullptr) return shape.emission_texture.reset();
+  if (shape.catches_shadows) value.fail_key("cannot be combined with 'shadow_catcher'", "one of them");
+  const std::size_t channels = shape.emission_texture ? 3 : 1;
+  for (std::size_t c = 0; c < channels; ++c) {
+    if (channels > 1) light.channel = c;
+    context.lights.push_back({shape.name, light, value.place(), shape.is_seen});
+  }
+}
+
 void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shape) {
   const auto medium = reader.find("medium"), reflectance = reader.find("reflectance");
   const auto group = reader.find("group");
@@ -150,6 +166,8 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
   }
   if (const auto map = reader.find("normal_map")) shape.normal_map = read_normal_map(*map);
   if (const auto map = reader.find("bump_map")) shape.bump_map = read_bump_map(*map, context.mm_per_unit);
+  if (const auto map = reader.find("displacement"))
+    shape.displacement = read_displacement(*map, context.mm_per_unit);
   read_gloss(reader, shape);
   for (const std::string_view name : {"fuzz_weight", "fuzz_color", "fuzz_roughness"})
     if (const auto key = reader.find(name); key && shape.medium)
@@ -181,10 +199,12 @@ Shape read_shape(const Value& value, const std::string& name, ShapeContext& cont
   shape.source = read_source(reader, context, shape.place);
   if (transform) shape.to_world = read_transform(*transform, context.mm_per_unit);
   // A mesh file without a size in mm is in scene units.
-  const auto* mesh = std::get_if<MeshFile>(&shape.source);
-  if (mesh != nullptr && !mesh->fit_size)
+  auto* mesh = std::get_if<MeshFile>(&shape.source);
+  if (mesh != nullptr && !mesh->fit_size) {
+    mesh->mm_per_unit = context.mm_per_unit;
     for (Vec3d* axis : {&shape.to_world.x, &shape.to_world.y, &shape.to_world.z})
       *axis *= context.mm_per_unit;
+  }
   if (normals) shape.normals = static_cast<NormalMode>(normals->choice());
   read_surface(reader, context, shape);
   if (const auto visible = reader.find("visible")) shape.is_seen = visible->flag();
@@ -193,6 +213,8 @@ Shape read_shape(const Value& value, const std::string& name, ShapeContext& cont
     if (shape.catches_shadows && shape.medium)
       catcher->fail_key("cannot be combined with 'medium'", "an opaque shape");
   }
+  if (const auto emission = reader.find("emission")) read_emission(*emission, context, shape);
+  ++context.shapes_read;
   return shape;
 }
 

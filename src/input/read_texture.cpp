@@ -210,6 +210,12 @@ Texture read_normal_map(const Value& value) {
   return map;
 }
 
+Texture read_displacement(const Value& value, double mm_per_unit) {
+  Texture texture = read_texture(value, TexturePart::number);
+  texture.scale = texture.scale * mm_per_unit;
+  return texture;
+}
+
 std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit) {
   Texture texture = read_texture(value, TexturePart::number);
   if (texture.source->constant()) return {};

@@ -17,7 +17,9 @@ namespace opaline {
 struct ShapeContext {
   double mm_per_unit = 1;
   const std::vector<Medium>* media = nullptr;
-  std::map<std::string, std::size_t> group_media;  ///< filled while reading
+  std::map<std::string, std::size_t> group_media{};  ///< filled while reading
+  std::size_t shapes_read = 0;
+  std::vector<Light> lights{};  ///< lights of emitting shapes, filled while reading
 };
 
 /// Reads a list of two numbers.
@@ -32,6 +34,9 @@ Rgb take_mean(Texture& texture);
 Texture read_normal_map(const Value& value);
 /// Height map with its scale in mm; none: flat.
 std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);
+
+/// The same without a special case for equal heights.
+Texture read_displacement(const Value& value, double mm_per_unit);
 
 /// Index of refraction with the reflectance of `ior` at normal incidence, times the weight.
 /// from  OpenPBR Surface 1.1, specular_weight

@@ -142,6 +142,9 @@ std::vector<KeyInfo> shape_rows() {
       textured(row("shape", "reflectance", color, "", kUnitInterval, "0.5",
                    "diffuse reflectance of an opaque shape, multiplied by `vertex_colors`; cannot be "
                    "combined with `medium`")),
+      textured(row("shape", "emission", color, "W/(mm² sr)", kNonNegative, "0",
+                   "radiance emitted by the surface, on its outer side, besides the light it reflects or "
+                   "transmits; a light named as the shape. Texels are multiplied by `scale`")),
       row("shape", "vertex_colors", flag, "", kFiniteNumber, "true; false under a texture",
           "with `file`: vertex colours are the reflectance of an opaque shape, multiplied by `reflectance` "
           "if given; they multiply a medium's `tint` and `base_color`"),
@@ -167,6 +170,10 @@ std::vector<KeyInfo> shape_rows() {
       textured(row("shape", "bump_map", object, "", kFiniteNumber, "none",
                    "height map that perturbs the normals, after `normal_map`; does not displace the surface. "
                    "Heights are the texture times `scale`, in scene units, regardless of `transform`")),
+      textured(row("shape", "displacement", object, "", kFiniteNumber, "none",
+                   "height map that moves the vertices along their smooth normals, after `subdivide` and "
+                   "`transform`; the normals follow. Heights are the texture times `scale`, in scene units; "
+                   "the mesh limits the detail")),
       row("shape", "group", text, "", kFiniteNumber, "alone",
           "translucent shapes of one group are one body, with one medium; light does not scatter from one "
           "body to another"),

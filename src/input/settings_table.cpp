@@ -170,6 +170,10 @@ std::span<const Member<Film>> film_members() {
        read_crop,
        crop_json,
        {view}},  // after the resolution, as it must lie within
+      member<&Film::pixel_aspect>(
+          "pixel_aspect", number, "", {.01, 100}, "", {view, view_near},
+          "width of a pixel over its height; 2 for anamorphic images, to be shown twice as wide; "
+          "the header of the EXR states it"),
       member<&Film::samples_per_pixel>("samples_per_pixel", whole_number, "", {1, 65536}, "",
                                        {view, view_near}, "camera rays per pixel"),
       member<&Film::filter>("filter", choice, "", kFiniteNumber, "", {view},

@@ -35,7 +35,8 @@ void visit_members(Tree& object, std::string_view section, const std::string& pa
     const KeyInfo& info = key_info(section, member.key);
     if (!may_be_spectrum(info)) continue;
     const bool is_coefficient = info.type != ValueType::color;
-    const bool emits = section.starts_with("light.") ? member.key != "strength" : section == "scene";
+    const bool emits = section.starts_with("light.") ? member.key != "strength"
+                                                     : section == "scene" || member.key == "emission";
     visit(member, info,
           is_coefficient ? Quantity::coefficient
           : emits        ? Quantity::emission

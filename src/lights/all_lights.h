@@ -7,6 +7,7 @@
 #include "lights/many_lights.h"
 #include "lights/point_light.h"
 #include "lights/quad_light.h"
+#include "lights/shape_light.h"
 #include "lights/sphere_light.h"
 #include "lights/spot_light.h"
 #include "lights/surroundings.h"

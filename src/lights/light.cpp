@@ -71,7 +71,13 @@ bool is_visible(const Light& light) {
   return many != nullptr ? many->tree->has_area() : !is_delta(light);
 }
 
+bool is_of_shape(const Light& light) {
+  return std::holds_alternative<ShapeLight>(light.source);
+}
+
 bool share_rays(const Light& a, const Light& b) {
+  const auto *shape = std::get_if<ShapeLight>(&a.source), *other_shape = std::get_if<ShapeLight>(&b.source);
+  if (shape != nullptr && other_shape != nullptr) return shape->shape == other_shape->shape;
   const auto *tree = std::get_if<ManyLights>(&a.source), *other_tree = std::get_if<ManyLights>(&b.source);
   if (tree != nullptr && other_tree != nullptr) return tree->tree->hash() == other_tree->tree->hash();
   const auto *one = std::get_if<EnvironmentLight>(&a.source),

@@ -37,6 +37,9 @@ int shadow_rays(const Light& light, int light_samples);
 /// True if rays can hit the light: it has an area or is an environment.
 bool is_visible(const Light& light);
 
+/// True for the light of a shape: rays hit the shape.
+bool is_of_shape(const Light& light);
+
 struct EnvironmentLobe;
 
 /// Specular lobe of a rough boundary towards the camera: GGX facets around the mirror direction.

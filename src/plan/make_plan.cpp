@@ -58,7 +58,7 @@ void check_reach(const Scene& scene, const World& world) {
   if (world.meshes.empty()) return;
   check_distance(scene, "camera.position", length(into_world(world, scene.camera.position)), world.unit);
   for (const Light& light : scene.lights) {
-    const Light moved = recentred(light, world.origin, world.unit);
+    const Light moved = light_in_world(scene, world, light);
     const std::string name = "the light '" + light.name + "'";
     check_distance(scene, name, reach_of(moved), world.unit);
     const double brightest = max_component(emission(moved));
@@ -256,6 +256,18 @@ std::size_t bytes_of_denoiser(const Film& film) {
   return 8'000'000 + std::min<std::size_t>(550 * pixels, 325'000'000) + 24 * pixels;
 }
 
+/// Copies of the meshes of emitting shapes, their cells, and structures for rays towards them.
+std::size_t bytes_of_emitters(const Scene& scene, const World& world) {
+  std::size_t bytes = 0;
+  for (const Light& light : scene.lights) {
+    const auto* const emitted = std::get_if<ShapeLight>(&light.source);
+    if (emitted == nullptr || emitted->channel.value_or(0) != 0) continue;
+    const Mesh& mesh = world.meshes[emitted->shape];
+    bytes += mesh.positions.size() * 60 + mesh.triangles.size() * 350 + 200'000;
+  }
+  return bytes;
+}
+
 /// A second structure for camera rays, if any shape moves while the shutter is open.
 std::size_t bytes_of_motion(const Scene& scene, const World& world) {
   std::size_t bytes = 0;
@@ -303,7 +315,8 @@ Plan make_plan(const Scene& scene, const World& world) {
         2 * (mesh.uvs.size() * sizeof(CornerUvs) + mesh.tangents.size() * sizeof(CornerTangents) +
              mesh.colors.size() * sizeof(CornerColors));
   }
-  plan.bytes += bytes_of_motion(scene, world) + picture_bytes(scene, environments);
+  plan.bytes +=
+      bytes_of_motion(scene, world) + bytes_of_emitters(scene, world) + picture_bytes(scene, environments);
   const std::size_t without_bodies = plan.bytes;
   std::size_t samples = 0, caches = 0;
   double temporary = 0;  // one body after the other

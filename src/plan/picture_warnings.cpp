@@ -182,7 +182,7 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     const Light& light = scene.lights[l];
     if (l > 0 && share_rays(scene.lights[l - 1], light)) continue;  // another channel of an environment
-    const std::optional<Vec3d> place = extent(light).center;
+    const std::optional<Vec3d> place = is_of_shape(light) ? std::nullopt : extent(light).center;
     const double distance = place ? length(*place - middle) : 0;
     if (emission(light) == Rgb{})
       texts.push_back(fmt::format("the light {} emits nothing", light.name));

@@ -43,6 +43,7 @@ bool is_around(const World& world, std::size_t shape, const BodyPlan& body) {
 
 /// True if a part of the light's bounding sphere may be inside the mesh.
 bool may_light(const World& world, const Light& light, const Mesh& mesh) {
+  if (is_of_shape(light)) return true;
   const LightExtent lamp = extent(light);
   if (!lamp.center) return false;
   const Vec3d center = into_world(world, *lamp.center);

@@ -101,7 +101,8 @@ std::size_t seen_pixels(const Scene& scene, std::span<const Light> lights, const
   const CameraRays rays(scene.camera, scene.film, world);
   SeenCells cells(part);
   for (const Light& light : lights)
-    if (light.is_seen && is_visible(light) && !add_light(light, rays, cells)) return all;
+    if (light.is_seen && is_visible(light) && !is_of_shape(light) && !add_light(light, rays, cells))
+      return all;
   std::vector<CellBox> around;  // each vertex
   for (const Mesh& mesh : world.meshes) {
     around.clear();

@@ -50,11 +50,11 @@ CameraRays::CameraRays(const Camera& camera, const Film& film, const World& worl
       per_focus_distance_(world.unit /
                           camera.focus_distance.value_or(length(camera.look_at - camera.position))),
       blades_(camera.blades) {
-  const double pixel = width_.at(1);
+  const double pixel = width_.at(1), across = pixel * film.pixel_aspect;
   const Vec3d right = normalized(cross(forward_, camera.up)), down = cross(forward_, right);
-  right_ = right * pixel;
+  right_ = right * across;
   down_ = down * pixel;
-  across_ = right / pixel;
+  across_ = right / across;
   below_ = down / pixel;
   lens_right_ = right * lens_radius_;
   lens_down_ = down * lens_radius_;

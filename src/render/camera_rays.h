@@ -11,7 +11,7 @@
 
 namespace opaline {
 
-/// Width of a pixel by depth, world units.
+/// Height of a pixel by depth, world units.
 struct PixelWidth {
   double at_camera = 0, per_depth = 0;
   double at(double depth) const { return at_camera + per_depth * depth; }

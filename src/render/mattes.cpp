@@ -92,7 +92,8 @@ void count(SeenMeshes& seen, std::uint32_t mesh) {
 std::vector<Light> hiding_lights(const RenderInput& input) {
   std::vector<Light> lights;
   for (const Light& light : recentred_lights(input.scene, input.world))
-    if (!is_delta(light) && light.is_seen && extent(light).center) lights.push_back(light);
+    if (!is_delta(light) && !is_of_shape(light) && light.is_seen && extent(light).center)
+      lights.push_back(light);
   return lights;
 }
 

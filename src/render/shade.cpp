@@ -8,6 +8,7 @@
 
 #include "bodies/surface_boundaries.h"
 #include "core/random.h"
+#include "lights/shape_light.h"
 #include "render/bounced_light.h"
 #include "render/camera_rays.h"
 #include "subsurface/method.h"
@@ -45,7 +46,7 @@ constexpr std::uint64_t kGatheringSeed = 1, kFurtherSeed = 2;
 // Width of a camera ray: several share a pixel.
 PixelWidth camera_ray_width(const RenderInput& input) {
   const PixelWidth pixel = pixel_width(input.scene.camera, input.scene.film, input.world);
-  const double rays = std::sqrt(input.scene.film.samples_per_pixel);
+  const double rays = std::sqrt(input.scene.film.samples_per_pixel / input.scene.film.pixel_aspect);
   return {pixel.at_camera / rays, pixel.per_depth / rays};
 }
 
@@ -77,7 +78,10 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
   }
   for (const Light& light : lights_) emitted_.emplace_back(emission(light));
   for (const Light& light : lights_)
-    if (is_visible(light)) {
+    if (const auto* of_shape = std::get_if<ShapeLight>(&light.source)) {
+      emitted_by_.resize(input.scene.shapes.size());
+      emitted_by_[of_shape->shape].push_back(*of_shape);
+    } else if (is_visible(light)) {
       met_.add(light);
       if (light.is_seen) seen_.add(light);
     }
@@ -263,6 +267,7 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
       // turned to the ray at the time of the ray.
       const bool may_move = !input_.scene.shutter.empty();
       const Vec3f& outwards = may_move ? hit.edges_cross : point.geometric;
+      const bool is_front = dot(outwards, ray.direction) < 0;
       const bool from_behind = !appearances_[hit.mesh].translucent && dot(outwards, ray.direction) > 0;
       if (from_behind) {
         point.geometric = -point.geometric;
@@ -273,6 +278,7 @@ std::vector<SurfaceHits> Shader::collect(const RayBatch& batch, HeldView::Batch*
         point.position += point.geometric * point.offset;
       else
         point.position -= normalized(ray.direction) * point.offset;
+      if (!emitted_by_.empty() && !is_caught && is_front) out[i].emitted = emitted_towards(batch, i, point);
       if (!textures_.empty()) add_textures(batch, i, from_behind, point, own);
       own.points.push_back(point);
       own.hits.push_back(hit);
@@ -306,6 +312,17 @@ void Shader::add_textures(const RayBatch& batch, std::size_t ray, bool from_behi
     if (both > 0) here.tangent_share = along * along / both;
   }
   hits.textures.push_back(here);
+}
+
+RgbF Shader::emitted_towards(const RayBatch& batch, std::size_t ray, const SurfacePoint& point) const {
+  const auto& [traced, hit] = batch.rays[ray];
+  RgbF sum;
+  for (const ShapeLight& light : emitted_by_[hit.mesh]) {
+    const Footprint around = footprint_of(point, traced.direction, width_at(batch, ray));
+    sum += RgbF(in_channel(light.radiance, light.channel)) *
+           light.surface->texel({hit.triangle, hit.u, hit.v}, {around.x, around.y});
+  }
+  return sum;
 }
 
 float Shader::width_at(const RayBatch& batch, std::size_t ray) const {

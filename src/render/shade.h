@@ -108,6 +108,8 @@ class Shader {
   void add_shadows(const SurfaceHits& catchers, const RayBatch& batch) const;
   void add_textures(const RayBatch& batch, std::size_t ray, bool from_behind, SurfacePoint& point,
                     SurfaceHits& hits) const;
+  /// Emission of the shape hit by a ray.
+  RgbF emitted_towards(const RayBatch& batch, std::size_t ray, const SurfacePoint& point) const;
   Appearance appearance_of(const SurfaceHits& hits, std::size_t i) const;
   /// Light from other surfaces at hits; empty: none.
   std::vector<RgbF> bounced_at(const SurfaceHits& hits, const OuterBoundary& boundary, const Pass& pass,
@@ -143,11 +145,12 @@ class Shader {
   }
 
   const RenderInput& input_;
-  std::vector<Light> lights_;            // recentred
-  std::vector<RgbF> emitted_;            // one per light
-  MetLights met_, seen_;                 // by any ray, by those of the camera
-  std::vector<Light> unit_lights_;       // all with unit emission, if reflections are cacheable
-  std::vector<Appearance> appearances_;  // one per mesh
+  std::vector<Light> lights_;                        // recentred
+  std::vector<RgbF> emitted_;                        // one per light
+  MetLights met_, seen_;                             // by any ray, by those of the camera
+  std::vector<std::vector<ShapeLight>> emitted_by_;  // one per shape; empty: no shape emits
+  std::vector<Light> unit_lights_;                   // all with unit emission, if reflections are cacheable
+  std::vector<Appearance> appearances_;              // one per mesh
   SurfaceTextures textures_;
   PixelWidth ray_width_;  // for camera rays
   Fields fields_;

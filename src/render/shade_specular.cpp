@@ -4,6 +4,7 @@
 // heuristic (Veach & Guibas 1995).
 #include <algorithm>
 #include <numbers>
+#include <optional>
 
 #include "core/random.h"
 #include "irradiance/sample_key.h"
@@ -269,9 +270,20 @@ struct Shader::GlossyHits {
     return outer.has_fuzz() ? outer.past_fuzz(frames[i].view.z) * outer.past_fuzz(light.z) : 1;
   }
   RgbF& specular(std::size_t i) const { return batch.out[hits.rays[i]].specular; }
+  // A bent normal may reflect into the surface, and from there outwards again: the direction below the surface of
+  // such light, local; none: it does not reach the camera.
+  std::optional<Vec3f> below(std::size_t i, const Vec3f& towards) const {
+    if (hits.textures.empty() || !hits.textures[i].is_bent) return {};
+    const Vec3f& geometric = hits.points[i].geometric;
+    const float height = dot(towards, geometric);
+    const Vec3f local = frames[i].local(towards - geometric * (2 * height));
+    return height > 0 && local.z > 0 ? std::optional(local) : std::nullopt;
+  }
   // Sampling densities of the lobe and of a light, times their number of samples, 1/sr.
   float of_lobe(std::size_t i, const Vec3f& towards) const {
-    return float(facets) * boundary(i).density(frames[i].view, frames[i].local(towards));
+    float density = boundary(i).density(frames[i].view, frames[i].local(towards));
+    if (const auto again = below(i, towards)) density += boundary(i).density(frames[i].view, *again);
+    return float(facets) * density;
   }
   float of_light(std::size_t i, const Light& light, const Vec3f& towards) const {
     const SurfacePoint& point = hits.points[i];
@@ -283,7 +295,6 @@ struct Shader::GlossyHits {
     float weight;
     RgbF color;  // factor of metals
     std::uint32_t hit;
-    bool is_again;  // reflected into the surface by a bent normal, and from there outwards again
   };
   // Samples directions of the lobes, hit by hit; fills `rays`, to be traced.
   std::vector<LobeRay> draw_from_lobes(std::vector<TracedRay>& rays) const {
@@ -301,8 +312,8 @@ struct Shader::GlossyHits {
         if (!(weight > 0 && (height > 0 || is_again))) continue;
         if (is_again) towards = towards - hits.points[i].geometric * (2 * height);
         rays.push_back(leaving(hits.points[i], towards));
-        drawn.push_back({weight / float(facets) * past_fuzz(i, direction), color(i, direction),
-                         std::uint32_t(i), is_again});
+        drawn.push_back(
+            {weight / float(facets) * past_fuzz(i, direction), color(i, direction), std::uint32_t(i)});
       }
     }
     return drawn;
@@ -357,10 +368,15 @@ void Shader::add_highlights(const GlossyHits& glossy, HeldView::Coat* coat) cons
         const Vec3f local = glossy.frames[i].local(towards);
         const float share =
             is_delta(light) ? 1 : power(glossy.of_light(i, light, towards), glossy.of_lobe(i, towards));
-        const float value =
-            glossy.boundary(i).value(glossy.frames[i].view, local) / local.z * glossy.past_fuzz(i, local);
-        const float weight = irradiance * value * share;
+        const auto weight_of = [&](const Vec3f& direction) {
+          const float value = glossy.boundary(i).value(glossy.frames[i].view, direction) / local.z *
+                              glossy.past_fuzz(i, direction);
+          return irradiance * value * share;
+        };
+        const float weight = weight_of(local);
         glossy.specular(i) += emitted_[l] * glossy.color(i, local) * weight;
+        if (const auto again = glossy.below(i, towards))
+          glossy.specular(i) += emitted_[l] * glossy.color(i, *again) * weight_of(*again);
         if (coat != nullptr) coat->lights.push_back({glossy.hits.rays[i], std::uint32_t(l), 1, weight});
       },
       glossy.lobes);
@@ -384,16 +400,15 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldVie
   std::vector<std::uint64_t> met_keys;
   for (std::size_t r = 0; r < rays.size(); ++r) {
     const auto& [ray, mesh_hit] = rays[r];
-    const auto& [weight, color, i, is_again] = drawn[r];
+    const auto& [weight, color, i] = drawn[r];
     const bool is_free = mesh_hit.mesh == Hit::kMiss;
     for (std::size_t l = 0; l < lights_.size(); ++l) {
       const Light& light = lights_[l];
       if (is_delta(light)) continue;
       RgbF radiance = seen_radiance(coat != nullptr ? unit_lights_[l] : light, ray, is_free);
       if (radiance == RgbF{}) continue;
-      const float balanced = is_again ? weight
-                                      : weight * power(glossy.of_lobe(i, ray.direction),
-                                                       glossy.of_light(i, light, ray.direction));
+      const float balanced =
+          weight * power(glossy.of_lobe(i, ray.direction), glossy.of_light(i, light, ray.direction));
       if (coat != nullptr) {
         const float unit = max_component(radiance);
         coat->lights.push_back({glossy.hits.rays[i], std::uint32_t(l), unit, balanced});

@@ -61,6 +61,7 @@ Image empty_image(const Rectangle& part, const Film& film, std::vector<std::stri
   image.crop_x = part.x0;
   image.crop_y = part.y0;
   image.full_width = film.resolution[0];
+  image.pixel_aspect = film.pixel_aspect;
   image.full_height = film.resolution[1];
   image.channels = std::move(channels);
   image.pixels.resize(std::size_t(image.width) * std::size_t(image.height) * image.channels.size());

@@ -59,6 +59,13 @@ bool is_solid(const Texture& texture) {
   return texture.triplanar_width > 0 || texture.source->noise() != nullptr;
 }
 
+Transform solid_to_world(const Shape& shape) {
+  Transform to_world = shape.to_world;
+  if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
+    for (Vec3d* axis : {&to_world.x, &to_world.y, &to_world.z}) *axis = *axis / mesh->mm_per_unit;
+  return to_world;
+}
+
 bool needs_uvs(const Scene& scene, const Shape& shape) {
   return std::ranges::any_of(textures_of(scene, shape),
                              [](const Texture* texture) { return !is_solid(*texture); });

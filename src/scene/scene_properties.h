@@ -51,6 +51,8 @@ bool has_maps(const Scene& scene, std::span<const std::uint32_t> shapes);
 std::vector<const Texture*> textures_of(const Scene& scene, const Shape& shape);
 /// True if a texture's values depend on the position in the space of the shape, instead of UVs.
 bool is_solid(const Texture& texture);
+/// From the space of solid textures, mm, to the world.
+Transform solid_to_world(const Shape& shape);
 /// True if a shape's mesh needs UVs.
 bool needs_uvs(const Scene& scene, const Shape& shape);
 /// Anisotropy of a shape's rough boundary; null for smooth or isotropic ones.

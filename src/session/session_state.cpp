@@ -51,6 +51,9 @@ void Session::State::edit(Scene scene) {
   }
   if (scene.lights.empty())
     scene.settings.method = Method::lambert;  // a black image, with nothing to precompute
+  std::vector<Light> emitters;
+  for (const Light& light : scene.lights)
+    if (is_of_shape(light)) emitters.push_back(light_in_world(scene, *world, light));
   choose_models(scene, *world, reference_);
   Plan plan = make_plan(scene, *world);
   scene_ = std::move(scene);
@@ -59,6 +62,7 @@ void Session::State::edit(Scene scene) {
   shape_keys_ = std::move(keys);
   mesh_keys_ = std::move(meshes);
   plan_ = std::move(plan);
+  emitters_ = std::move(emitters);
   work_ = work;
   decisions_.clear();
   costs_.clear();

@@ -65,6 +65,7 @@ struct Session::State {
   std::vector<StageKey> shape_keys_;  // source of each mesh
   std::vector<ShapeMemory> shape_memories_;
   std::vector<MeshKeys> mesh_keys_;
+  std::vector<Light> emitters_;  // lights of shapes: hold their surfaces between stages
   Plan plan_;
   std::unique_ptr<RayScene> rays_;
   RayBuild rays_build_ = RayBuild::careful;

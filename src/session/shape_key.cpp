@@ -6,6 +6,7 @@
 #include <ctime>
 #include <optional>
 
+#include "bodies/surface_textures.h"
 #include "geometry/mesh_file.h"
 #include "scene/source_place.h"
 
@@ -74,6 +75,8 @@ StageKey shape_key(const Shape& shape, const StageKey& source) {
   KeyBuilder key("shape", 1);
   key.add(source).add(shape.to_world).add(shape.normals).add(shape.medium.has_value());
   key.add(shape.name);  // used in messages
+  if (shape.displacement)
+    add_to_key(key.add(std::string("displacement")).add(solid_to_world(shape)), *shape.displacement);
   return key.key();
 }
 

@@ -90,7 +90,7 @@ std::optional<double> near_light_distance(const Light& light, const World& world
 void warn_of_near_lights(const Scene& scene, const World& world, const BodyPlan& body,
                          std::vector<std::string>& warnings) {
   for (const Light& light : scene.lights) {
-    if (emission(light) == Rgb{}) continue;
+    if (emission(light) == Rgb{} || is_of_shape(light)) continue;
     const std::optional<double> distance = near_light_distance(light, world, body.meshes, body.spacing);
     if (!distance) continue;
     warnings.push_back(fmt::format(

@@ -123,22 +123,47 @@ TEST(MtlMaterials, StatementsWithoutAnalogueAreReportedTogether) {
                   .not_carried.empty());
 }
 
-// Claim: emission, transparency and unsupported textures are one warning each for a material, at their first statement, in
-// any case. Source: by hand. Tolerance: none. Fails if: they are only listed among unused statements, or once per statement.
-TEST(MtlMaterials, EmissionTransparencyAndOtherTexturesAreWarnings) {
+// Claim: transparency and unsupported textures are one warning each for a material, at their first statement, in any case.
+// Source: by hand. Tolerance: none. Fails if: they are only listed among unused statements, or once per statement.
+TEST(MtlMaterials, TransparencyAndOtherTexturesAreWarnings) {
   EXPECT_EQ(
-      warnings_of("newmtl red\nKd 0.2\nKe 1 1 1\nmap_Ke p.png\nd 0.4\nTf 0.9 1 1\nke 2\nd 0.4\n"),
-      "a.mtl:3: Ke, map_Ke and ke of material 'red' are ignored: emission is not supported\n"
-      "a.mtl:5: d and Tf of material 'red' are ignored: transparency is not supported; the surface renders "
+      warnings_of("newmtl red\nKd 0.2\nd 0.4\nTf 0.9 1 1\nd 0.4\n"),
+      "a.mtl:3: d and Tf of material 'red' are ignored: transparency is not supported; the surface renders "
       "opaque\n");
   EXPECT_EQ(
       warnings_of("newmtl red\nmap_Pr p.png\nmap_Ks q.png\n"),
-      "a.mtl:2: map_Pr and map_Ks of material 'red' are ignored: the supported textures are map_Kd, bump "
-      "and norm\n");
+      "a.mtl:2: map_Pr and map_Ks of material 'red' are ignored: the supported textures are map_Kd, map_Ke, "
+      "bump and norm\n");
   EXPECT_EQ(warnings_of("newmtl red\nTr 0.5\n"),
             "a.mtl:2: Tr of material 'red' is ignored: transparency is not supported; the surface renders "
             "opaque\n");
   EXPECT_EQ(warnings_of("newmtl red\nKe 0 0 0\nd 1\nTr 0\nTf 1 1 1\nnewmtl unused\nKe 1\nd 0.5\n"), "");
+}
+
+// Claim: Ke is the emission of the shape, above 1 too, one number for all three; map_Ke is its texture times Ke, alone where Ke
+// is black; a file that is not there leaves Ke. Source: scenes/README.md. Tolerance: 1e-6. Fails if: Ke is clamped, black
+// beside an image makes it dark, or the texture is read as data.
+TEST(MtlMaterials, EmissionIsALightOfTheShape) {
+  const auto radiance = [](const std::string& statements) -> Rgb {
+    const MtlFolder folder("newmtl red\nKd 0.2\n" + statements);
+    test::put_png(folder.file("p.png"), 4, 4, [](int x, int) {
+      return test::Bytes{x < 2 ? 255 : 0, 255, 0};
+    });
+    for (const Light& light : load_scene(folder.file("a.obj")).lights)
+      if (const auto* emitted = std::get_if<ShapeLight>(&light.source))
+        if (!emitted->channel || *emitted->channel == 0) return emitted->radiance;
+    return {};
+  };
+  const auto expect = [&](const std::string& statements, const Rgb& wanted) {
+    const Rgb found = radiance(statements);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(found[c], wanted[c], 1e-6) << statements;
+  };
+  expect("", {0, 0, 0});
+  expect("Ke 3 0.5 0\n", {3, .5, 0});
+  expect("ke 2\n", {2, 2, 2});
+  expect("Ke 0 0 0\nmap_Ke p.png\n", {.5, 1, 0});
+  expect("map_Ke p.png\nKe 4 2 1\n", {2, 2, 0});
+  expect("Ke 4 2 1\nmap_Ke gone.png\n", {4, 2, 1});
 }
 
 // Claim: materials that are in no library are one warning at the first usemtl, which names some of them. Source: by hand.

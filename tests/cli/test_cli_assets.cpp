@@ -376,7 +376,7 @@ TEST(CliAssets, WhatChangesTheImageIsAWarning) {
       << rough.err;
 }
 
-// Claim: textures that do not exist, glass and emission are warnings, once each for all meshes, and not repeated in the line about
+// Claim: textures that do not exist and glass are warnings, once each for all meshes, and not repeated in the line about
 // the asset. Source: by hand. Fails if: they are on that line alone, or a material is reported for each of its meshes.
 TEST(CliAssets, LossesOfMaterialsAreWarnings) {
   const ScratchFolder folder;
@@ -389,7 +389,6 @@ TEST(CliAssets, LossesOfMaterialsAreWarnings) {
       asset.material({{"name", "lens"},
                       {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 5}}}}},
                       {"occlusionTexture", {{"index", 6}}},
-                      {"emissiveFactor", {1, 1, 1}},
                       {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
   for (auto& primitive : asset.json["meshes"][0]["primitives"]) primitive["material"] = material;
   put_bytes(folder.file("a.glb"), asset.glb());
@@ -399,7 +398,6 @@ TEST(CliAssets, LossesOfMaterialsAreWarnings) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     for (const char* loss :
          {"baseColorTexture: textures[5] is not there", "occlusionTexture: textures[6] is not there",
-          "emissiveFactor: ignored, emission is not supported",
           "KHR_materials_transmission: a clear, non-scattering body is not supported; treated as "
           "opaque"}) {
       const std::string warning = std::string("warning: a.glb: material 'lens': ") + loss;
@@ -411,11 +409,11 @@ TEST(CliAssets, LossesOfMaterialsAreWarnings) {
   }
 }
 
-// Claim: emission and glass of an MTL and a material in no library are warnings of `render` and `info`, not repeated in the line
+// Claim: glass of an MTL and a material in no library are warnings of `render` and `info`, not repeated in the line
 // about the asset; faces without a material are called so. Source: by hand. Fails if: a loss is on that line alone.
 TEST(CliAssets, LossesOfMtlMaterialsAreWarnings) {
   const ScratchFolder folder;
-  put_bytes(folder.file("a.mtl"), "newmtl lens\nKd 0.8\nKe 1 1 1\nd 0.2\nTf 0.5 0.5 0.5\n");
+  put_bytes(folder.file("a.mtl"), "newmtl lens\nKd 0.8\nd 0.2\nTf 0.5 0.5 0.5\n");
   put_bytes(folder.file("a.obj"),
             "mtllib a.mtl\nv 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 2 3\nf 4 2 3\nf 1 2 3\nusemtl lens\n"
             "f 1 2 4\nusemtl gone\nf 2 3 4\n");
@@ -423,8 +421,7 @@ TEST(CliAssets, LossesOfMtlMaterialsAreWarnings) {
                                                 {"render", "a.obj", "-o", "a.png", "--resolution", "8x8"}}) {
     const Outcome outcome = run_program(words, folder.path);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    for (const char* loss : {"a.mtl:3: Ke of material 'lens' is ignored: emission is not supported",
-                             "a.mtl:4: d and Tf of material 'lens' are ignored: transparency is not "
+    for (const char* loss : {"a.mtl:3: d and Tf of material 'lens' are ignored: transparency is not "
                              "supported; the surface renders "
                              "opaque",
                              "a.obj:11: material 'gone': not found in any library; uses grey",

@@ -61,6 +61,21 @@ TEST(Exr, FloatRoundTrip) {
             std::map(written.metadata.begin(), written.metadata.end()));
 }
 
+// Claim: the header has the width of a pixel over its height, 1 unless set, and it comes back. Source: OpenEXR's
+// pixelAspectRatio, read by OpenImageIO. Tolerance: none. Fails if: it is inverted or left at 1.
+TEST(Exr, PixelAspect) {
+  const ScratchFolder folder;
+  Image image = layered();
+  for (const double aspect : {1., 2., .5}) {
+    image.pixel_aspect = aspect;
+    write_exr(folder.file("a.exr"), image, false);
+    const auto file = OIIO::ImageInput::open(folder.file("a.exr"));
+    ASSERT_TRUE(file);
+    EXPECT_EQ(file->spec().get_float_attribute("PixelAspectRatio", -1), float(aspect));
+    EXPECT_EQ(read_image(folder.file("a.exr")).pixel_aspect, aspect);
+  }
+}
+
 // Claim: asked for halves, colour and N are halves within 2^-11 relative (11 significant bits, rounded to
 // nearest); P, Z, irradiance and variance stay exact floats, in the file's types too. Source: image.h. Fails
 // if: one type is used for all channels, or halves are truncated.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "core/scratch_folder.h"
 #include "input/load_scene.h"
@@ -202,6 +203,42 @@ TEST(BumpMap, LeavesAFurnaceWhite) {
       }
     EXPECT_NEAR(sum, 1, .01) << surface;
   }
+}
+
+// Claim: highlights of small, bright lights on steep bumps have no specks, and one mean for lights of one power and of any
+// small size, also a point: light that a bent normal reflects into the surface and from there outwards is sampled by the
+// lights, too. Source: Veach & Guibas 1995, the weights; bench: brightest pixel over the 99.9th percentile 8.8 without them,
+// 1.5 with. Tolerance: 3 times; 2 % of the mean, against 6 % where small lights lack this light. Fails if: lights met by such
+// rays have the weight 1, or these rays alone bring the light.
+TEST(Bump, SmallLightsLeaveNoSpecks) {
+  const ScratchFolder folder;
+  const auto specular = [&](const std::string& light) {
+    const Image image =
+        picture_of(folder, R"({"media": {"m": {"sigma_a": 0.1, "sigma_s_prime": 1, "specular_ior": 1.4,
+        "specular_roughness": 0.4}},
+      "shapes": [{"sphere": {"radius": 50}, "medium": "m",
+        "bump_map": {"noise": "clouds", "size": 2, "octaves": 4, "scale": 0.8}}],
+      "lights": [{"name": "sun", )" +
+                               light +
+                               R"(}], "camera": {"position": [0, 0, 300], "field_of_view": 21},
+      "film": {"resolution": [96, 96], "samples_per_pixel": 16}, "settings": {"method": "lambert", "bounces": 0}})");
+    std::vector<double> values;
+    for (int y = 0; y < 96; ++y)
+      for (int x = 0; x < 96; ++x)
+        if (channel(image, x, y, "A") > 0) values.push_back(double(channel(image, x, y, "specular.R")));
+    std::ranges::sort(values);
+    return values;
+  };
+  const auto mean = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.) / double(values.size());
+  };
+  const std::vector<double>
+      wide = specular(R"("type": "sphere", "center": [400, 200, 100], "radius": 30, "radiance": 1111.11)"),
+      small = specular(R"("type": "sphere", "center": [400, 200, 100], "radius": 3, "radiance": 111111)"),
+      point = specular(R"("type": "point", "position": [400, 200, 100], "intensity": 3.14159e6)");
+  EXPECT_LT(wide.back(), 3 * wide[wide.size() * 999 / 1000]);
+  EXPECT_NEAR(mean(small), mean(wide), .02 * mean(wide));
+  EXPECT_NEAR(mean(point), mean(wide), .02 * mean(wide));
 }
 
 }  // namespace

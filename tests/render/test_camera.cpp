@@ -87,6 +87,30 @@ TEST(Camera, ParallelRaysAreAsFarApartAsPixels) {
   EXPECT_NEAR(pixel_width(camera, film_of(1), far_world()).at(1234), pixel, 1e-12);
 }
 
+// Claim: a pixel twice as wide as high has rays twice as far apart along rows and as far as before along columns, around the
+// same middle, in both projections; its points are projected to it, and the aspect 1 changes nothing. Source: OpenEXR's
+// pixelAspectRatio, width over height. Tolerance: single precision. Fails if: the aspect is inverted, scales heights, or the
+// projection lacks it.
+TEST(Camera, PixelsHaveAnAspect) {
+  for (const Camera& camera : {looking_down(), parallel()}) {
+    Film wide = film_of(4);
+    wide.pixel_aspect = 2;
+    const CameraRays plain(camera, film_of(4), far_world()), rays(camera, wide, far_world());
+    const auto step = [](const CameraRays& of, int x, int y) {
+      const Vec3d here = point_at(of.middle_ray(20, 30), 17);
+      return point_at(of.middle_ray(20 + x, 30 + y), 17) - here;
+    };
+    EXPECT_NEAR(length(step(rays, 1, 0) - 2. * step(plain, 1, 0)), 0, 2e-5);
+    EXPECT_NEAR(length(step(rays, 0, 1) - step(plain, 0, 1)), 0, 2e-5);
+    const CameraRays::FilmPlace seen = rays.film_place(point_at(rays.middle_ray(3, 40), 17));
+    EXPECT_NEAR(seen.x, 3.5, 1e-3);
+    EXPECT_NEAR(seen.y, 40.5, 1e-3);
+    const CameraRays::FilmPlace middle = rays.film_place(into_world(far_world(), camera.look_at));
+    EXPECT_NEAR(middle.x, 32, 1e-3);
+    EXPECT_NEAR(middle.y, 24, 1e-3);
+  }
+}
+
 // Claim: a shift by a fraction of the image is the view of as many pixels further to the right and up. Source: scenes/README.md.
 // Tolerance: single precision. Fails if: it is counted in heights both ways, or down.
 TEST(Camera, ShiftMovesByPixels) {

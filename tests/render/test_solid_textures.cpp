@@ -65,6 +65,29 @@ TEST(SolidTextures, NoiseHasTheSpaceOfTheShape) {
   EXPECT_GT(most - least, .3);
 }
 
+// Claim: noise on a mesh file is the same in scenes of other units, with all lengths alike. Source: scenes/README.md, sizes in
+// scene units. Tolerance: 1e-4, single precision. Fails if the vertices of the file are taken in mm.
+TEST(SolidTextures, NoiseOnMeshFilesFollowsTheUnit) {
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.obj"), "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
+  const auto image = [&](const std::string& unit) {
+    return picture_of(folder, R"({"mm_per_unit": )" + unit + R"(, "shapes": [{"file": "a.obj",
+        "reflectance": {"noise": "clouds", "size": 0.4, "octaves": 2}}],
+      "lights": [{"type": "directional", "direction": [0, 0, -1], "irradiance": 3}],
+      "camera": {"position": [0, 0, 10], "field_of_view": 11}, "film": {"resolution": [24, 24], "pixel_type": "float"},
+      "settings": {"method": "lambert"}})");
+  };
+  const Image one = image("1"), ten = image("10");
+  double least = 1, most = 0;
+  for (int y = 2; y < 22; ++y)
+    for (int x = 2; x < 22; ++x) {
+      EXPECT_NEAR(channel(ten, x, y, "R"), channel(one, x, y, "R"), 1e-4) << x << ' ' << y;
+      least = std::min(least, double(channel(one, x, y, "R")));
+      most = std::max(most, double(channel(one, x, y, "R")));
+    }
+  EXPECT_GT(most - least, .2);
+}
+
 // Claim: on the faces of a box, a projected image lies as on a wall: its width as given, upright, and unmirrored on the
 // faces towards +x, +y and +z. Source: by hand, from the layer P. Tolerance: .02, a texel's quarter. Fails if an axis is
 // mirrored or exchanged.

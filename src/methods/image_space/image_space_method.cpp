@@ -98,7 +98,7 @@ StageKey lit_key(const BodyStages& stages, double spacing) {
   for (const MeshKeys& mesh : stages.mesh_keys) key.add(mesh.all);
   for (const std::uint32_t mesh : stages.body.plan.meshes) key.add(mesh);
   for (const Light& light : scene.lights) {
-    const Light moved = recentred(light, world.origin, world.unit);
+    const Light moved = light_in_world(scene, world, light);
     key.add(view_light_key(moved)).add(light_seed(0, moved)).add(emission(moved));
   }
   return key.add(tint_key(scene, world, stages.body.plan.meshes, {})).key();

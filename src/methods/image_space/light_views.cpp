@@ -188,9 +188,9 @@ class Views {
     Weights weights = from.weights;
     Vec3f direction = from.direction;
     if (std::isfinite(from.distance)) {
-      const LightSample sample = sample_light(lights[0], point.position, point.normal, from.square, count);
+      const LightSample sample =
+          sample_lights(lights, point.position, point.normal, from.square, count, weights);
       direction = sample.direction;
-      weights[0] = sample.weight;
     }
     const float facing = dot(point.geometric, direction), factor = textures_.bend(point),
                 cosine = std::min(1.f, dot(point.normal, direction));
@@ -263,7 +263,7 @@ LightView view_from(const Bounds& box, const Vec3d& position, double spacing) {
 std::vector<FluxSample> seen_from_lights(const PrecomputeInput& input, const BodyPlan& body, double spacing) {
   std::vector<Light> lights;  // without trees of lights
   for (const Light& light : input.scene.lights)
-    lights.push_back(recentred(light, input.world.origin, input.world.unit));
+    lights.push_back(light_in_world(input.scene, input.world, light));
   const Bounds box = bounds(input.world, body.meshes);
   const Vec3d centre = .5 * (box.low + box.high);
   const Views views(input, body);

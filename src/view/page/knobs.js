@@ -84,7 +84,7 @@ export class Knobs {
     if (!this.rows) return;
     const media = scene.media || {}, lights = scene.lights || [], shapes = scene.shapes || [];
     const shape = JSON.stringify([unusedOf(scene.camera), Object.entries(media).map(([name, m]) => [name, this.formOf(m), kOptional.filter((key) => key in m), objectsOf(m)]),
-      lights.map((l) => [l.name, l.type, objectsOf(l)]), shapes.map((s) => [s.name, s.medium, kGloss.filter((key) => key in s), objectsOf(s)])]);
+      lights.map((l) => [l.name, l.type, objectsOf(l)]), shapes.map((s) => [s.name, s.medium, [...kGloss, "emission"].filter((key) => key in s), objectsOf(s)])]);
     if (shape !== this.shape) this.build(scene);
     this.shape = shape;
     for (const knob of this.knobs) {
@@ -109,7 +109,7 @@ export class Knobs {
     this.root.append(this.buttons([["Add light", {do: "lights", change: "add", index: 0}]]));
     group("scene", "Scene", ["surroundings", "backdrop", "mm_per_unit"].map((key) => this.knob("scene", key, key, (s) => s[key])).concat(this.floorRow()));
     (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`, [...this.materialRow(i),
-      ...[...("medium" in shape ? [] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), "normals", "visible"].map((key) =>
+      ...[...("medium" in shape ? [] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), ...("emission" in shape ? ["emission"] : []), "normals", "visible"].map((key) =>
         this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key])), ...this.placementRows(i)]));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera, unusedOf(scene.camera)));
     group("film", "Image", this.rowsOf("film", "film", (s) => s.film));

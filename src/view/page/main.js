@@ -28,10 +28,11 @@ let reference = null, waitingReference = null, behind = {trade: false, reference
 function takeFilm() {
   const given = serverScene.film || {}, [width, height] = given.resolution || [512, 512];
   const [x0, y0, x1, y1] = given.crop || [0, 0, width, height];
-  film.aspect = width / height;
+  const pixel = given.pixel_aspect || 1;
+  film.aspect = pixel * width / height;
   film.shownHeight = (y1 - y0) / height;
   film.place = ({x, y, depth}) => ({x: (x * width - x0) / (x1 - x0), y: (y * height - y0) / (y1 - y0), depth});
-  film.shownAspect = (x1 - x0) / (y1 - y0);
+  film.shownAspect = pixel * (x1 - x0) / (y1 - y0);
   film.pixels = [x1 - x0, y1 - y0];
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bodies/solid_textures.h"
+#include "image/solid_lookup.h"
 
 #include <cmath>
 #include <cstdint>
@@ -68,21 +68,6 @@ SolidSpace solid_space(const Transform& to_world) {
   if (is_finite(x) && is_finite(y) && is_finite(z)) space = {x, y, z, {}};
   space.origin = to_world.translation;
   return space;
-}
-
-SolidPlace solid_place(const SolidSpace& space, const World& world, std::uint32_t mesh,
-                       std::uint32_t triangle, float u, float v, const std::array<Vec3f, 2>& sides) {
-  const Mesh& surface = world.meshes[mesh];
-  std::array<Vec3d, 3> corners;
-  for (std::size_t k = 0; k < 3; ++k)
-    corners[k] = out_of_world(world, Vec3d(surface.positions[surface.triangles[triangle][k]]));
-  const auto inside = [&](const Vec3d& outside) {
-    return Vec3d{dot(space.x, outside), dot(space.y, outside), dot(space.z, outside)};
-  };
-  const Vec3d side_u = inside(corners[1] - corners[0]), side_v = inside(corners[2] - corners[0]);
-  return {inside(corners[0] - space.origin) + side_u * double(u) + side_v * double(v),
-          normalized(cross(side_u, side_v)), inside(Vec3d(sides[0]) * world.unit),
-          inside(Vec3d(sides[1]) * world.unit)};
 }
 
 std::array<float, 4> solid_value(const Texture& texture, const SolidPlace& solid) {

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 
-#include "geometry/world.h"
+#include "opaline/scene.h"
+#include "opaline/vec3.h"
 
 namespace opaline {
 
@@ -23,10 +23,6 @@ struct SolidPlace {
 
 /// Identity axes for a transform without an inverse.
 SolidSpace solid_space(const Transform& to_world);
-
-/// in    u, v: barycentrics of the triangle's second and third corner; sides: of the footprint, world units
-SolidPlace solid_place(const SolidSpace& space, const World& world, std::uint32_t mesh,
-                       std::uint32_t triangle, float u, float v, const std::array<Vec3f, 2>& sides);
 
 /// Filtered texel.
 /// in    texture: is_solid
