@@ -276,10 +276,10 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   check_denoising(arguments, scene);
   check_layers(arguments.layers, scene);
   check_precompute(arguments, scene, session.plan());
-  const std::size_t more_bytes =
-      arguments.part ? part_bytes(*arguments.part, session)
-                     : asked_layer_bytes(arguments.layers, scene) +
-                           (holds_view(arguments, is_frame) ? bytes_of_view(session) : 0);
+  const std::size_t more_bytes = arguments.part
+                                     ? part_bytes(*arguments.part, session)
+                                     : asked_layer_bytes(arguments.layers, scene) +
+                                           (holds_view(arguments, is_frame) ? bytes_of_view(session) : 0);
   check_memory(scene, session.plan(), more_bytes);
   if (arguments.target_error) print_trial(arguments.log, seconds_of_trial(session));
   KnownErrors errors = choose_settings(stages, arguments, session);
