@@ -11,10 +11,10 @@
 namespace opaline {
 namespace {
 
-constexpr double kFarthestEdge = 3;  // mean free paths
-constexpr double kSameSheet = .9;    // least agreement of normals of one sheet
-constexpr double kWeight = 6;        // per fraction of light from another part of the surface
-constexpr double kLeastLeft = .02;   // share of a path to follow
+constexpr double kFarthestEdge = 3;      // mean free paths
+constexpr double kSameSheetAtEdge = .9;  // least agreement of normals of one sheet
+constexpr double kWeight = 6;            // per fraction of light from another part of the surface
+constexpr double kLeastLeft = .02;       // share of a path to follow
 constexpr double kLeastBeam = .05;
 constexpr double kLeastWeight = .1;
 constexpr double kOfThin = 4;   // subtracted, per share of light from an opposite sheet
@@ -71,7 +71,7 @@ bool EdgeExitance::has_own_sheet_only(const BoundaryElement& from, const Vec3d& 
   const std::uint32_t cell = space_.grid.at(Vec3f(position));
   return cell != DiffusionGrid::kNone &&
          std::ranges::all_of(space_.elements_of.of(cell),
-                             [&](std::uint32_t e) { return agreement(from, e) > kSameSheet; });
+                             [&](std::uint32_t e) { return agreement(from, e) > kSameSheetAtEdge; });
 }
 
 // Along the flattest paths, if they may leave: by some points on them.
@@ -88,7 +88,7 @@ bool EdgeExitance::is_near_other_sheet(std::size_t element) const {
         }))
       continue;
     const BodyPaths::End end = paths_.follow(way, 0, farthest, cell, [](double, double, std::uint32_t) {});
-    if (end.exit && std::abs(agreement(from, end.exit->element)) < kSameSheet) return true;
+    if (end.exit && std::abs(agreement(from, end.exit->element)) < kSameSheetAtEdge) return true;
   }
   return false;
 }
@@ -103,7 +103,8 @@ void EdgeExitance::add_sheet(std::uint32_t element, Paths& paths) const {
   constexpr std::size_t kMost = 4;
   if (paths.sheets.size() == kMost) return;
   for (const std::uint32_t other : paths.sheets)
-    if (dot(space_.boundary.elements[other].normal, space_.boundary.elements[element].normal) > kSameSheet)
+    if (dot(space_.boundary.elements[other].normal, space_.boundary.elements[element].normal) >
+        kSameSheetAtEdge)
       return;
   paths.sheets.push_back(element);
 }
@@ -143,8 +144,8 @@ void EdgeExitance::follow(std::size_t sample, Paths& paths) const {
       end_node(end.cell);
       if (!end.exit) break;
       const float agreement_there = agreement(from, end.exit->element);
-      if (leg == 0 && agreement_there < kSameSheet)
-        (agreement_there > -kSameSheet ? paths.beside : paths.opposite) += left;
+      if (leg == 0 && agreement_there < kSameSheetAtEdge)
+        (agreement_there > -kSameSheetAtEdge ? paths.beside : paths.opposite) += left;
       add_sheet(end.exit->element, paths);
       const auto [further, reflectance] = paths_.reflected(way, *end.exit);
       left *= reflectance;
@@ -178,7 +179,7 @@ EdgeExitance::Entry EdgeExitance::back_to_sheet(const Vec3d& position, const Vec
       for (const std::uint32_t e : space_.elements_of.of(cell)) {
         const BoundaryElement& other = space_.boundary.elements[e];
         const Vec3d apart = space_.in_lattice(other.position) - entry, other_normal(other.normal);
-        if (dot(other_normal, sheet_normal) < kSameSheet) {
+        if (dot(other_normal, sheet_normal) < kSameSheetAtEdge) {
           if (dot(apart, normal) < 0 && dot(apart, other_normal) < 0) return {};  // beyond an edge
           continue;
         }
@@ -212,7 +213,7 @@ bool EdgeExitance::is_lit(std::uint32_t sheet, const TransmittedLight& source) c
   return cell != DiffusionGrid::kNone &&
          std::ranges::any_of(space_.grid.links(cell), [&](const DiffusionGrid::Link& link) {
            return std::ranges::any_of(space_.elements_of.of(link.to), [&](std::uint32_t e) {
-             return enters(e) && agreement(space_.boundary.elements[sheet], e) > kSameSheet;
+             return enters(e) && agreement(space_.boundary.elements[sheet], e) > kSameSheetAtEdge;
            });
          });
 }
