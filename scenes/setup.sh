@@ -226,9 +226,7 @@ configure() {
   fi
   [[ -f $cache ]] || generator=(-G Ninja)
   # Both commands treat warnings as errors, with the compilers of Debian; different flags would build everything twice.
-  # Several files at once take half the time of a first build, and more than a change of one file needs.
-  logged cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE -DCMAKE_COMPILE_WARNING_AS_ERROR=ON \
-    -DCMAKE_UNITY_BUILD=ON "$@" ||
+  logged cmake -S "$root" -B "$folder" "${generator[@]}" --log-level=NOTICE -DCMAKE_COMPILE_WARNING_AS_ERROR=ON "$@" ||
     fail 3 "cmake could not configure $folder"
 }
 

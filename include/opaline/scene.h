@@ -399,8 +399,8 @@ struct ShapeLight {
   static constexpr std::string_view kType = "shape";
   static constexpr bool kCanBeSeen = false;  ///< as its shape
   std::size_t shape = 0;                     ///< index into Scene::shapes
-  Rgb radiance;                              ///< times the texture
-  std::optional<std::size_t> channel;        ///< its only channel; none: the texture is grey
+  Rgb radiance{};                            ///< times the texture
+  std::optional<std::size_t> channel{};      ///< its only channel; none: the texture is grey
   /// Its triangles in the world's space, added by light_in_world (bodies/body.h); null in a Scene.
   std::shared_ptr<const EmittingSurface> surface{};
   friend bool operator==(const ShapeLight&, const ShapeLight&) = default;
