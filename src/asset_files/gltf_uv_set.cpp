@@ -23,7 +23,9 @@ std::size_t uv_set_of(const GltfModel& gltf, const GltfPrimitive& primitive) {
         material.record("normalTexture"),
         extensions.record("KHR_materials_transmission").record("transmissionTexture"),
         diffuse_transmission.record("diffuseTransmissionTexture"),
-        diffuse_transmission.record("diffuseTransmissionColorTexture")}) {
+        diffuse_transmission.record("diffuseTransmissionColorTexture"), material.record("emissiveTexture"),
+        extensions.record("KHR_materials_sheen").record("sheenColorTexture"),
+        extensions.record("KHR_materials_sheen").record("sheenRoughnessTexture")}) {
     if (info.index("index") == kNoRecord) continue;
     const std::size_t uv_set = uv_set_of(info);
     if (primitive.attributes.contains(uv_attribute(uv_set))) return uv_set;

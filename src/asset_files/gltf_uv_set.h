@@ -12,7 +12,7 @@ std::string uv_attribute(std::size_t uv_set);
 std::size_t uv_set_of(const GltfRecord& texture_info);
 
 /// Set of UVs of a part: from the first texture of its material with UVs in the mesh, in the order base colour,
-/// metalness and roughness, normals, transmission; 0 without such a texture.
+/// metalness and roughness, normals, transmission, emission, sheen; 0 without such a texture.
 /// error Error{bad_input} at a value of the wrong type
 std::size_t uv_set_of(const GltfModel& gltf, const GltfPrimitive& primitive);
 

@@ -126,7 +126,7 @@ class SurfaceReader {
     const ImageNode image = connected_image(found);
     std::optional<Json> map = texture(image, name);
     if (!map) return {};
-    if (image.color_space == "srgb_texture")
+    if (image.color_space == "srgb_texture" && is_color)
       (*map)["color_space"] = "srgb";
     else if (image.color_space == "lin_rec709" && is_color)
       (*map)["color_space"] = "linear";

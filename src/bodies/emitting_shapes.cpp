@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lights of emitting shapes in the world's space.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <mutex>
 
@@ -31,11 +32,16 @@ EmittingSurface::Texels texels_of(const Texture& texture, const Shape& shape) {
       };
 }
 
+/// At least the diagonal; another one only where it doubles.
+double rounded_diagonal(const World& world) {
+  return std::exp2(std::ilogb(world.diagonal) + 1);
+}
+
 StageKey surface_key(const Scene& scene, const World& world, std::size_t shape) {
   KeyBuilder key("emitting surface", 1);
   const Mesh& mesh = world.meshes[shape];
   key.add_array(std::span(mesh.positions)).add_array(std::span(mesh.triangles));
-  key.add(world.diagonal);
+  key.add(rounded_diagonal(world));
   if (const std::optional<Texture>& texture = scene.shapes[shape].emission_texture) {
     add_to_key(key, *texture);
     key.add_array(std::span(mesh.uvs)).add(world.origin).add(world.unit);
@@ -57,7 +63,7 @@ std::shared_ptr<const EmittingSurface> emitting_surface(const Scene& scene, cons
   const Shape& shape = scene.shapes[index];
   const Mesh& mesh = world.meshes[index];
   // Twice the largest offset of a ray's origin.
-  const float clearance = float(2 * world.diagonal) * (kRayOffsetOfSize + 2 * kRayOffsetOfPosition);
+  const float clearance = float(2 * rounded_diagonal(world)) * (kRayOffsetOfSize + 2 * kRayOffsetOfPosition);
   World alone;
   alone.meshes.push_back({mesh.positions, {}, mesh.triangles, mesh.uvs});
   alone.origin = world.origin;

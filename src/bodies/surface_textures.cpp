@@ -36,8 +36,8 @@ constexpr float kRoundingOfHalf = 1.01f / 255;
 RgbF overlaid(const RgbF& color, const RgbF& detail) {
   RgbF result = color;
   for (std::size_t c = 0; c < 3; ++c) {
-    const float s = std::min(color[c], 1.0f), d = detail[c];
-    if (std::abs(2 * d - 1) < kRoundingOfHalf) continue;
+    const float s = color[c], d = detail[c];
+    if (!(s < 1) || std::abs(2 * d - 1) < kRoundingOfHalf) continue;  // 1 stays 1, emission may exceed it
     const float linear = 2 * s * d, twice = 2 * s - 1;
     result[c] = s < .5f   ? linear
                 : d < .5f ? linear + (s - linear) * twice * twice
@@ -201,8 +201,9 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world)
     const std::vector<const Texture*> textures = textures_of(scene, shape);
     if (std::ranges::any_of(textures, [](const Texture* texture) { return is_solid(*texture); }))
       own.space = solid_space(solid_to_world(shape));
-    is_empty_ = is_empty_ && !own.has_tint && textures.empty() && own.grain == nullptr &&
-                own.partly_opaque == nullptr;
+    const bool is_displaced_alone = textures.size() == 1 && shape.displacement;
+    is_empty_ = is_empty_ && !own.has_tint && (textures.empty() || is_displaced_alone) &&
+                own.grain == nullptr && own.partly_opaque == nullptr;
     for (const Texture* texture : textures) check_tiles(*texture, world.meshes[m], shape.name);
   }
 }

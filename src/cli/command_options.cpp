@@ -226,6 +226,7 @@ void add_merge_options(CLI::App& app, MergeArguments& merge, Options& options) {
       ->required()
       ->type_name("FILE");
   add_threads(app, merge.render.threads, "maximum number of threads (default: one per core)");
+  add_allow_outside(app);
   app.add_flag("--quiet", merge.log.quiet, "print warnings and errors only");
   add_log_option(app, options);
   app.footer(kMergeNotes);

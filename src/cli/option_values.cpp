@@ -229,7 +229,6 @@ CLI::Validator layers_check() {
 }
 
 std::optional<ImagePart> part_of(std::string_view text) {
-  constexpr std::size_t kMostParts = 4096;
   ImagePart part;
   const char* const end = text.data() + text.size();
   const auto number = std::from_chars(text.data(), end, part.number);

@@ -89,7 +89,8 @@ PartFile::PartFile(const std::string& path) : path_(path), file_(path, "part") {
   } catch (const Json::exception&) {
     throw refused();
   }
-  if (record_.part.number < 1 || record_.part.number > record_.part.count) throw refused();
+  const ImagePart& part = record_.part;
+  if (part.number < 1 || part.number > part.count || part.count > kMostParts) throw refused();
   begin_ = end + 1;
   end_ = file_.size() - kDigest;
 }

@@ -24,6 +24,19 @@ constexpr std::size_t kTotals = 3;  // numbers per range of starts
 /// Place of a pass among those of a body's sources: the passes of a part are written in this order.
 using PassPlace = std::tuple<std::size_t, std::size_t, std::size_t>;  // pass, source, channel
 
+/// error Error{bad_input} naming the file: its contents are those of no part
+template <class Read>
+void checked(const PartFile& file, const Read& read) {
+  const auto damaged = [&] { return bad_file(file.path(), "is damaged: its header is not that of a part"); };
+  try {
+    read();
+  } catch (const Json::exception&) {
+    throw damaged();
+  } catch (const std::out_of_range&) {
+    throw damaged();
+  }
+}
+
 /// The passes of one part.
 WalkShare share_of(const ImagePart& part) {
   const std::size_t passes = default_passes();
@@ -43,24 +56,14 @@ class PartWalks {
   PartWalks& operator=(const PartWalks&) = delete;
 
   void read(const PartFile& file) {
-    std::uint64_t offset = 0;
-    sources_ = file.contents().at("sources").get<std::vector<std::string>>();
-    for (const Json& pass : file.contents().at("passes")) {
-      passes_[{pass.at(0), pass.at(1), pass.at(2)}] = sums_at(file, pass, offset);
-      offset += bytes_of(pass);
-    }
+    checked(file, [&] { read_passes(file); });
   }
 
   /// Adds the passes of a source in a file; false if the file does not know it.
   static bool add(const PartFile& file, const StageKey& key, SourceSums& source) {
-    const std::vector<std::string> sources = file.contents().at("sources");
-    const auto number = std::size_t(std::ranges::find(sources, hex(key)) - sources.begin());
-    std::uint64_t offset = 0;
-    for (const Json& pass : file.contents().at("passes")) {
-      if (pass.at(1) == number) add_pass(source.channels.at(pass.at(2)), sums_at(file, pass, offset));
-      offset += bytes_of(pass);
-    }
-    return number < sources.size();
+    bool is_known = false;
+    checked(file, [&] { is_known = add_passes(file, key, source); });
+    return is_known;
   }
 
   template <class AfterPass>
@@ -95,6 +98,27 @@ class PartWalks {
   }
 
  private:
+  void read_passes(const PartFile& file) {
+    std::uint64_t offset = 0;
+    sources_ = file.contents().at("sources").get<std::vector<std::string>>();
+    for (const Json& pass : file.contents().at("passes")) {
+      passes_[{pass.at(0), pass.at(1), pass.at(2)}] = sums_at(file, pass, offset);
+      offset += bytes_of(pass);
+    }
+  }
+
+  static bool add_passes(const PartFile& file, const StageKey& key, SourceSums& source) {
+    const std::vector<std::string> sources = file.contents().at("sources");
+    const auto number = std::size_t(std::ranges::find(sources, hex(key)) - sources.begin());
+    std::uint64_t offset = 0;
+    for (const Json& pass : file.contents().at("passes")) {
+      if (pass.at(1) == number)
+        add_pass(source.channels.at(pass.at(2).get<std::size_t>()), sums_at(file, pass, offset));
+      offset += bytes_of(pass);
+    }
+    return number < sources.size();
+  }
+
   // A pass in the contents of a file: its place, and its numbers of samples and of ranges of starts.
   static std::uint64_t bytes_of(const Json& pass) {
     return (pass.at(3).get<std::uint64_t>() + kTotals * pass.at(4).get<std::uint64_t>()) * sizeof(double);
@@ -127,12 +151,7 @@ class PartPixels {
   void read(const PartFile& file) { add(file, state_); }
 
   void add(const PartFile& file, DirectState& state) const {
-    const auto values = file.values<std::array<float, DirectState::kSums>>(0, pixels_.size());
-    const Rectangle part = rendered_part(session_.scene().film);
-    state.sums.resize(std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0) * DirectState::kSums);
-    state.passes = file.contents().at("passes");
-    for (std::size_t i = 0; i < pixels_.size(); ++i)
-      std::ranges::copy(values[i], state.sums.begin() + std::ptrdiff_t(pixels_[i] * DirectState::kSums));
+    checked(file, [&] { add_pixels(file, state); });
   }
 
   template <class AfterPass>
@@ -160,6 +179,15 @@ class PartPixels {
   }
 
  private:
+  void add_pixels(const PartFile& file, DirectState& state) const {
+    const auto values = file.values<std::array<float, DirectState::kSums>>(0, pixels_.size());
+    const Rectangle part = rendered_part(session_.scene().film);
+    state.sums.resize(std::size_t(part.x1 - part.x0) * std::size_t(part.y1 - part.y0) * DirectState::kSums);
+    state.passes = file.contents().at("passes");
+    for (std::size_t i = 0; i < pixels_.size(); ++i)
+      std::ranges::copy(values[i], state.sums.begin() + std::ptrdiff_t(pixels_[i] * DirectState::kSums));
+  }
+
   Session& session_;
   std::vector<std::size_t> pixels_;
   DirectState state_;
@@ -187,18 +215,20 @@ void run_part(StageRunner& stages, const RenderArguments& arguments, Session& se
   Work work(session, record.part);
   if (earlier != nullptr) work.read(*earlier);
   auto last = std::chrono::steady_clock::now();
+  bool has_passes = earlier != nullptr;  // an interruption before leaves the file of another image
   try {
     work.run(stages, record.part, [&] {
+      has_passes = true;
       if (std::chrono::steady_clock::now() - last < std::chrono::minutes(1)) return;
       work.write(path, record, false);
       last = std::chrono::steady_clock::now();
     });
   } catch (const Error& stopped) {
     if (stopped.kind != ErrorKind::interrupted) throw;
-    work.write(path, record, false);
+    if (has_passes) work.write(path, record, false);
+    const std::string stored = has_passes ? path + " stores the complete passes" : "no pass is complete";
     throw Error(ErrorKind::interrupted, {}, 0, 0,
-                fmt::format("interrupted; {} stores the complete passes; resume with {}", path,
-                            arguments.command_line));
+                fmt::format("interrupted; {}; resume with {}", stored, arguments.command_line));
   }
   work.write(path, record, true);
 }

@@ -6,6 +6,8 @@
 
 namespace opaline {
 
+inline constexpr std::size_t kMostParts = 4096;
+
 /// One of several parts of about equal work.
 struct ImagePart {
   std::size_t number = 1;  ///< from 1 to count

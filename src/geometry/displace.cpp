@@ -53,6 +53,9 @@ std::vector<float> solid_heights(const Mesh& mesh, const Texture& texture, const
   const auto inside = [&](const Vec3d& outside) {
     return Vec3d{dot(space.x, outside), dot(space.y, outside), dot(space.z, outside)};
   };
+  const auto inside_normal = [&](const Vec3d& normal) {
+    return normalized(Vec3d{dot(to_world.x, normal), dot(to_world.y, normal), dot(to_world.z, normal)});
+  };
   const std::vector<double> sides = side_lengths(mesh);
   std::vector<float> heights(mesh.positions.size());
   parallel_chunks(heights.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -61,7 +64,7 @@ std::vector<float> solid_heights(const Mesh& mesh, const Texture& texture, const
       Vec3d x, y;
       tangent_frame(normal, x, y);
       const double width = kFiltered * sides[v];
-      heights[v] = solid_value(texture, {inside(mesh.positions[v] - space.origin), normalized(inside(normal)),
+      heights[v] = solid_value(texture, {inside(mesh.positions[v] - space.origin), inside_normal(normal),
                                          inside(x * width), inside(y * width)})[texture.channel];
     }
   });
@@ -72,7 +75,7 @@ std::vector<float> mean_heights(const Mesh& mesh, const std::vector<std::array<f
   std::vector<float> heights(mesh.positions.size());
   std::vector<int> counts(heights.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3 && mesh.uvs[t] != CornerUvs{}; ++k) {  // others fill holes, without UVs
       heights[mesh.triangles[t][k]] += at_corners[t][k];
       ++counts[mesh.triangles[t][k]];
     }

@@ -58,10 +58,13 @@ void check_channels(const Value& file, const std::optional<Value>& channel, cons
 }
 
 /// Colours become values at the document's wavelengths.
-void mix_channels(const Value& value, TexturePart part, Texture& texture) {
+// A grey scale commutes with the mixing; beside details it stays apart, as overlays precede it.
+void mix_channels(const Value& value, TexturePart part, bool has_details, Texture& texture) {
   const ThreeWavelengths& wavelengths = *value.wavelengths();
   if (part == TexturePart::color) {
     texture.from_rgb = wavelengths.from_rgb;
+    const Vec3d& scale = texture.scale;
+    if (has_details && scale.x == scale.y && scale.y == scale.z) return;
     for (Rgb& row : *texture.from_rgb) row = row * texture.scale;
     texture.scale = Vec3d(1);
   } else if (part == TexturePart::triple && value.info().type == ValueType::number_or_triple &&
@@ -141,7 +144,7 @@ Texture read_texture(const Value& value, TexturePart part, bool is_detail) {
   if (const auto width = reader.find("triplanar"))
     texture.triplanar_width = width->length(value.mm_per_unit());
   if (const auto scale = reader.find("scale")) texture.scale = scale->number_or_triple();
-  if (value.wavelengths() != nullptr) mix_channels(value, part, texture);
+  if (value.wavelengths() != nullptr) mix_channels(value, part, reader.find("detail").has_value(), texture);
   const std::optional<Value> channel = reader.find("channel");
   if (channel && part != TexturePart::number)
     value.fail(part == TexturePart::color ? "is a colour" : "requires three numbers", "no 'channel'");

@@ -169,7 +169,7 @@ void IrradianceLattice::light(Cell& cell, const PointIrradianceInput& lighting) 
   PointIrradianceInput here = lighting;
   here.points = cell.points;
   here.keys = keys;
-  here.boundary = boundary_;
+  here.boundary = lighting.boundary;  // with the textures of the present world
   here.light_samples = light_samples_;
   here.variance = {};
   if (holds_lights_) add_transfers(here, cell.lights);

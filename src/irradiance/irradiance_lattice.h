@@ -60,7 +60,7 @@ class IrradianceLattice {
   /// Keys of the cells within reach, mm, of any of some points.
   std::vector<Key> keys_near(std::span<const SurfacePoint> points, std::span<const std::uint32_t> chosen,
                              double reach, std::uint32_t level) const;
-  /// in    lighting: its points, boundary and number of rays are ignored; otherwise equal at each call
+  /// in    lighting: its points and number of rays are ignored; otherwise equal at each call
   const Cell& cell(const Key& key, const PointIrradianceInput& lighting);
 
  private:

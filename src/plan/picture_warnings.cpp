@@ -184,7 +184,11 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
     if (l > 0 && share_rays(scene.lights[l - 1], light)) continue;  // another channel of an environment
     const std::optional<Vec3d> place = is_of_shape(light) ? std::nullopt : extent(light).center;
     const double distance = place ? length(*place - middle) : 0;
-    if (emission(light) == Rgb{})
+    const bool is_dark = std::ranges::all_of(
+        scene.lights.begin() + std::ptrdiff_t(l), scene.lights.end(), [&](const Light& other) {
+          return emission(other) == Rgb{} || (&other != &light && !share_rays(light, other));
+        });
+    if (is_dark)
       texts.push_back(fmt::format("the light {} emits nothing", light.name));
     else if (distance > kFarAway * world.diagonal * world.unit)
       texts.push_back(fmt::format(

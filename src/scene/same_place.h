@@ -8,7 +8,7 @@ namespace opaline {
 
 /// True if both shapes have the same vertices.
 inline bool in_same_place(const Shape& a, const Shape& b) {
-  return a.source == b.source && a.to_world == b.to_world;
+  return a.source == b.source && a.to_world == b.to_world && a.displacement == b.displacement;
 }
 
 }  // namespace opaline

@@ -96,6 +96,7 @@ void add_maps(KeyBuilder& key, const Scene& scene, const World& world,
     if (!shape.normal_map && !shape.bump_map) continue;
     for (const auto& map : {&shape.normal_map, &shape.bump_map})
       if (*map) add_to_key(key.add(std::string("map")).add(m), **map);
+    if (shape.bump_map) key.add(world.unit);
     add_coordinates(key, world.meshes[m]);
     add_solid_space(key, scene, m);
   }

@@ -22,7 +22,7 @@ class IrradianceLattice;
 inline constexpr std::size_t kMostGatheredBytes = std::size_t(256) << 20;
 
 /// Cached from image to image by Session::hold_view. Bytes: 20 per camera ray; per hit 4, 4 per light (8 with
-/// an estimated error), and 56 if memory allows; some 100 more for a rough boundary reflecting lights and
+/// an estimated error), and 60 if memory allows; some 100 more for a rough boundary reflecting lights and
 /// surfaces, up to kMostCoatBytes in total; some 60 for each gathered ray with a hit, up to
 /// kMostGatheredBytes in total; and some 60 for each lattice point of near fields beside shadow edges, up to
 /// IrradianceLattice::kMostBytes per body.

@@ -19,10 +19,30 @@ const Json* child_of(const Json& owner, const std::string& name) {
   return nullptr;
 }
 
+/// True for list elements that may be the same one: equal members, and rotations about the same axis.
+bool are_alike(const Json& a, const Json& b) {
+  if (!a.is_object() || !b.is_object()) return a.is_object() == b.is_object();
+  if (a.size() != b.size()) return false;
+  return std::ranges::all_of(a.items(), [&](const auto& member) {
+    if (!b.contains(member.key())) return false;
+    const Json& other = b.at(member.key());
+    if (member.key() == "axis") return member.value() == other;
+    return member.key() != "rotate" || are_alike(member.value(), other);
+  });
+}
+
+bool is_frame_number(const std::string& text) {
+  const std::size_t sign = text.starts_with('-') ? 1 : 0;
+  return text.size() > sign && text.size() <= 9 &&
+         text.find_first_not_of("0123456789", sign) == std::string::npos;
+}
+
 }  // namespace
 
 bool is_keyed(const Json& value) {
-  return value.is_object() && value.contains("keyed");
+  if (!value.is_object() || !value.contains("keyed") || !value.at("keyed").is_object()) return false;
+  const auto frames = value.at("keyed").items();
+  return std::ranges::all_of(frames, [](const auto& frame) { return is_frame_number(frame.key()); });
 }
 
 std::set<int> key_frames(const Json& value) {
@@ -49,8 +69,15 @@ Json with_keys(const Json& value, const Json& shown, const Json& now, int frame)
     made = value;
     made["keyed"][std::to_string(frame)] = now;
   } else if (value.is_array() && shown.is_array() && now.is_array() && now.size() >= value.size()) {
-    for (std::size_t i = 0; i < std::min(value.size(), shown.size()); ++i)
-      made[i] = with_keys(value[i], shown[i], now[i], frame);
+    const bool has_more = now.size() > value.size();  // elements may stand in front
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < std::min(value.size(), shown.size()); ++i) {
+      std::size_t at = next;
+      while (has_more && at < now.size() && !are_alike(shown[i], now[at])) ++at;
+      if (at >= now.size()) continue;
+      made[at] = with_keys(value[i], shown[i], now[at], frame);
+      next = at + 1;
+    }
   } else if (value.is_object() && shown.is_object() && now.is_object()) {
     for (const auto& [key, part] : now.items())
       if (value.contains(key) && shown.contains(key))

@@ -50,6 +50,15 @@ bool is_name_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
 }
 
+/// Name of a shape in paths of edits: its own if it is plain and no other's, else its index, which changes with other edits.
+std::string path_name(const Json& shapes, std::size_t i) {
+  const std::string name = shapes[i].value("name", "");
+  const bool is_plain = !name.empty() && std::ranges::all_of(name, is_name_character) &&
+                        !std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; });
+  const auto has_name = [&](const Json& shape) { return shape.value("name", "") == name; };
+  return is_plain && std::ranges::count_if(shapes, has_name) == 1 ? name : std::to_string(i);
+}
+
 void check_new_name(const std::string& file, const Json& media, const std::string& name) {
   constexpr std::size_t kLongest = 64;
   if (name.empty() || name.size() > kLongest || !std::ranges::all_of(name, is_name_character))
@@ -113,7 +122,8 @@ void SceneEdits::rename_medium(const RenameMedium& wanted) {
   const Json shapes = scene.value("shapes", Json::array());
   for (std::size_t i = 0; i < shapes.size(); ++i)
     if (shapes[i].value("medium", "") == wanted.name)
-      changes.values.push_back({fmt::format("shapes.{}.medium", i), Json(wanted.to).dump()});
+      changes.values.push_back(
+          {fmt::format("shapes.{}.medium", path_name(shapes, i)), Json(wanted.to).dump()});
   change(changes, false);
 }
 

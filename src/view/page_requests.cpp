@@ -137,6 +137,7 @@ void ViewServer::State::open(PageConnection& page, const OpenFiles& files) {
     } else {
       edits.open(path);
       boxes.clear();
+      first_revision = edits.revision();
     }
   } catch (const std::exception&) {
     dropped.discard(path);

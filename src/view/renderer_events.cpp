@@ -16,9 +16,9 @@ constexpr std::chrono::milliseconds kTick{100};
 
 ViewEvents ViewServer::State::renderer_events() {
   return {[this](std::uint32_t revision, const Scene& scene, const Plan& plan, std::span<const Bounds> all) {
-            boost::asio::post(io, [this, text = plan_text(revision, scene, plan, all),
+            boost::asio::post(io, [this, revision, text = plan_text(revision, scene, plan, all),
                                    news = std::vector<Bounds>(all.begin(), all.end())] {
-              boxes = news;
+              if (revision >= first_revision) boxes = news;
               tell(PageText::plan, text);
             });
           },

@@ -83,7 +83,9 @@ bool SceneEdits::opens_file(const std::string& edit) const {
   if (std::ranges::find(with_files_, edit) != with_files_.end()) return false;
   const std::size_t end = edit.find('=');
   const std::string path = '.' + edit.substr(0, end), value = end < edit.size() ? edit.substr(end + 1) : "";
-  return value.find('\\') != std::string::npos || std::ranges::any_of(file_keys(), [&](std::string_view key) {
+  const bool hides_keys = path.find_first_of("\"'") != std::string::npos;  // by quotes
+  return hides_keys || value.find('\\') != std::string::npos ||
+         std::ranges::any_of(file_keys(), [&](std::string_view key) {
            return path.ends_with('.' + std::string(key)) ||
                   value.find('"' + std::string(key) + '"') != std::string::npos;
          });
@@ -180,8 +182,8 @@ std::string SceneEdits::restore(const std::vector<std::string>& edits) {
   Edits kept;
   std::string lost;
   for (const std::string& edit : edits)
-    if (!opens_file(edit))
-      kept.push_back(edit);
+    if (lost.empty() && !opens_file(edit))
+      kept.push_back(edit);  // later ones may refer to a lost one
     else if (lost.empty())
       lost = edit;
   scene_ = parsed(kept, look_);

@@ -176,6 +176,27 @@ TEST(ListEdits, KeysInListsStay) {
   EXPECT_EQ(edits.file_text(), folder.text);
 }
 
+// Claim: steps put in front of keyed ones leave their keys, as when a moving shape is turned or scaled. Fails if elements are
+// paired by their index.
+TEST(ListEdits, KeysStayBehindNewSteps) {
+  const ChangedFolder folder(
+      Replacements{{R"([{"translate": [15, 10, 0]}])",
+                    R"([{"rotate": {"axis": [0, 1, 0], "degrees": {"keyed": {"1": 0, "5": 90}}}},
+    {"translate": {"keyed": {"1": [15, 10, 0], "5": [25, 10, 0]}}}])"}});
+  SceneEdits edits(folder.scene, {});
+  edits.go_to_frame(5);
+  edits.set(set_of("shapes.right.transform",
+                   R"([{"scale": 2}, {"rotate": {"axis": [1, 0, 0], "degrees": 30}},
+                       {"rotate": {"axis": [0, 1, 0], "degrees": 90}}, {"translate": [25, 10, 0]}])"));
+  const auto at = [&](int frame) {
+    return parse_scene(edits.file_text(), folder.scene, {}, frame).shapes[1].to_world;
+  };
+  EXPECT_EQ(at(1).translation, (Vec3d{15, 10, 0}));
+  EXPECT_EQ(at(5).translation, (Vec3d{25, 10, 0}));
+  EXPECT_NEAR(at(1).x.x, 2, 1e-12);  // not turned about y
+  EXPECT_NEAR(at(5).x.z, -2, 1e-12);
+}
+
 // Claim: a key of the camera at a frame leaves the views at all other keys as they are, also where only its position was
 // keyed. Fails if the point of interest changes at all frames.
 TEST(ListEdits, TheCameraGetsAKey) {

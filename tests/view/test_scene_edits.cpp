@@ -61,6 +61,8 @@ TEST(SceneEdits, OpenNoFiles) {
            {"shapes.0.reflectance.texture", R"("/etc/passwd")"},
            {"shapes.0.reflectance", R"({"spectrum": "/etc/passwd"})"},
            {"texture", R"("/etc/passwd")"},
+           {R"(shapes.0.reflectance."texture")", R"("/etc/passwd")"},
+           {"shapes.0.reflectance.'spectrum'", R"("/etc/passwd")"},
            {"lights.0", R"({"type": "environment", "\u0066ile": "/etc/passwd"})"}})
     try {
       edits.set(one(path, value));

@@ -192,6 +192,7 @@ class Views {
           sample_lights(lights, point.position, point.normal, from.square, count, weights);
       direction = sample.direction;
     }
+    const Vec3f smooth = point.normal;  // tells the sides of the surface apart
     const float facing = dot(point.geometric, direction), factor = textures_.bend(point),
                 cosine = std::min(1.f, dot(point.normal, direction));
     if (!(facing > 0) || !(cosine > 0)) return;
@@ -204,7 +205,7 @@ class Views {
       emitted = emitted * textures_.tint(place).entering;
     }
     points.push_back({point.position, across / std::max(facing, kLeastCosine),
-                      emitted * (factor * cosine * boundary_.at(point).transmittance(cosine)), point.normal});
+                      emitted * (factor * cosine * boundary_.at(point).transmittance(cosine)), smooth});
   }
 
   const PrecomputeInput& input_;

@@ -59,8 +59,13 @@ std::size_t passes_of(const VolumeSums& sums) {
   return passes;
 }
 
-/// Sums of previous images or of the store; empty ones for new sources.
-VolumeSums known_sums(VolumeState& state, const WalkStore& store, std::span<const StageKey> keys) {
+/// Sums of previous images or of the store; empty ones for new sources, and where a damaged file has other numbers of
+/// samples.
+VolumeSums known_sums(VolumeState& state, const WalkStore& store, std::span<const StageKey> keys,
+                      std::size_t samples) {
+  const auto fits = [&](const WalkSums& sums) {
+    return sums.passes == 0 || (sums.flux.size() == samples && sums.roots.size() == samples);
+  };
   VolumeSums sums;
   for (const StageKey& key : keys) {
     const auto old = std::ranges::find(state.walk_keys, key);
@@ -69,6 +74,7 @@ VolumeSums known_sums(VolumeState& state, const WalkStore& store, std::span<cons
       found = std::move(state.walks.sources[std::size_t(old - state.walk_keys.begin())]);
     else if (store.find)
       found = store.find(key);
+    if (found && !std::ranges::all_of(found->channels, fits)) found.reset();
     sums.sources.push_back(found ? std::move(*found) : SourceSums());
   }
   return sums;
@@ -120,7 +126,7 @@ void VolumeMethod::prepare(BodyStages& stages) const {
     };
   }
   const std::vector<StageKey> keys = walk_keys(stages, walks, tint);
-  state.walks = known_sums(state, stages.walks, keys);
+  state.walks = known_sums(state, stages.walks, keys, walks.samples.size());
   state.walk_keys = keys;
   const std::size_t before = passes_of(state.walks);
   const auto keep = [&](const VolumeSums& now) {

@@ -80,7 +80,10 @@ export const movedBy = (placement, by) => movedTo(placement, rounded(placement.m
 
 export function turnedBy(placement, pivot, axis, degrees) {
   const turn = rotation(axis, degrees);
-  const angles = anglesOf(product(turn, rotationOf(placement.turns)));
+  const old = axesOf(placement.turns), own = kAxes.findIndex((a) => a.join() === axis.join());
+  const isAlone = old && own >= 0 && old.every((a) => a === own);
+  const angles = isAlone ? turnOf(placement).map((x, i) => i === own ? x + degrees : x) :
+    anglesOf(product(turn, rotationOf(placement.turns)));
   return {...turnedTo(placement, angles.map((x) => Number(x.toFixed(3)))), move: about(pivot, turn, placement.move)};
 }
 

@@ -99,7 +99,7 @@ class StageReader:
 
 def write_beside(path, data):
     """Writes a file completely or not at all."""
-    scratch = f"{path}.part"
+    scratch = f"{path}.{os.getpid()}.tmp"
     try:
         os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
         with open(scratch, "wb") as file:

@@ -153,6 +153,9 @@ class GltfMaterials:
         from .. import Error, image
         channels = []
         for texture, target in given:
+            if texture["texture"].is_tiled:
+                self.lose("roughness and metalness of several tiles, not packed in green and blue")
+                return None
             try:
                 source = numbers_of(texture)
             except Error:

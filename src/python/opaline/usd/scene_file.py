@@ -8,6 +8,7 @@ import os
 from .camera import default_camera
 from .glb import mesh_file
 from .records import Picture
+from .report import UsdError
 
 
 class SceneFile:
@@ -83,9 +84,12 @@ class SceneFile:
         """Path from the scene file; an image of a package is copied."""
         if not picture.is_packed:
             return os.path.relpath(picture.path, self.folder)
-        name = f"{self.stem}.textures/{picture.inner_name.replace('/', '_')}"
+        name = f"{self.stem}.textures/{picture.inner_name.replace('_', '__').replace('/', '_')}"
         if name not in self.files:
-            self.files[name] = picture.read()
+            data = picture.read()
+            if data is None:
+                raise UsdError(picture.path, "", "cannot be read")
+            self.files[name] = data
         return name
 
     def light(self, light):
