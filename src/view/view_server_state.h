@@ -73,7 +73,7 @@ struct ViewServer::State {
   BackgroundWork asked;  ///< requested background work
   PageConnection* picking = nullptr;
   std::vector<Bounds> boxes;            ///< bounds of the shapes, as last loaded, mm
-  std::uint32_t first_revision = 0;     ///< of the opened scene; boxes of earlier ones are another scene's
+  std::uint32_t first_revision = 0;     ///< first one of the opened scene; boxes of earlier ones are stale
   std::set<std::string> changed_files;  ///< since the scene was read
   FileWatch watch{io, [this](const std::set<std::string>& files) { reload(files); }};
 };
