@@ -114,6 +114,11 @@ TEST(GltfTextures, HaveTheUvsOfTheBaseColour) {
     EXPECT_EQ(part.uvs, (std::vector<std::array<float, 2>>{{.25f, 0}, {.5f, 0}, {.75f, .5f}}));
     EXPECT_TRUE(has(imported(asset).warnings, "normalTexture: textures[0] uses another set of UVs"));
   }
+  const Json lamp = {{"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", {{"index", 0}, {"texCoord", 1}}}};
+  Asset asset = textured_triangle(lamp, image);
+  asset.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
+      asset.accessor<float>("VEC2", kFloat, {.25f, 1, .5f, 1, .75f, .5f});
+  EXPECT_TRUE(scene_of(asset.glb(), "a.glb").shapes.at(0).emission_texture);
 }
 
 // Claim: the sheen's textures are those of fuzz: the weight by the brightest channel, times its factor, the mean hue for the fibres, the

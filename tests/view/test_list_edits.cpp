@@ -92,6 +92,29 @@ TEST(ListEdits, MediaAreRenamed) {
   EXPECT_EQ(edits.scene().media[0].name, "stone");
 }
 
+// Claim: a medium may be named "keyed", as in scene files, and the saved scene opens. Fails if that member is taken for keys.
+TEST(ListEdits, AMediumMayBeNamedKeyed) {
+  const ViewFolder folder;
+  SceneEdits edits(folder.scene, {});
+  edits.rename_medium({"stone", "keyed"});
+  put_bytes(folder.file("saved.json"), edits.file_text());
+  EXPECT_EQ(SceneEdits(folder.file("saved.json"), {}).scene().media[0].name, "keyed");
+}
+
+// Claim: a floor of a renamed medium can be removed. Fails if the new name is given by the index of the shape.
+TEST(ListEdits, TheFloorOfARenamedMediumCanBeRemoved) {
+  const ViewFolder folder;
+  SceneEdits edits(folder.scene, {});
+  edits.remove_floor();
+  edits.add_floor({-60, -10, -60}, {60, 20, 60});
+  const std::string name = edits.scene().shapes.back().name;
+  edits.set(set_of("shapes." + name + ".medium", "\"stone\""));
+  edits.rename_medium({"stone", "gneiss"});
+  EXPECT_EQ(edits.scene().shapes.back().medium, edits.scene().shapes[0].medium);
+  edits.remove_floor();
+  EXPECT_NE(edits.scene().shapes.back().name, name);
+}
+
 // Claim: names that are no names, or taken, are refused with the reason, and change nothing.
 TEST(ListEdits, MediaNamesAreChecked) {
   const ViewFolder folder;
