@@ -86,17 +86,18 @@ TEST(Displace, HeightsOfARampAtVertices) {
       const Vec3d& p = sheet.mesh.positions[v];
       if (p.x < .2 || p.x > .8) continue;  // the image repeats at its edges
       EXPECT_NEAR(p.z, side * .3 * p.x, 1e-6);
-      if (p.x > .3 && p.x < .7) EXPECT_GT(dot(Vec3d(sheet.mesh.normals[v]), normal), 1 - 1e-3);
-      {}
+      if (p.x > .3 && p.x < .7) {
+        EXPECT_GT(dot(Vec3d(sheet.mesh.normals[v]), normal), 1 - 1e-3);
+      }
     }
   }
+}
 
-  // Claim: a closed cage stays closed where the UVs of faces differ, whichever way the file winds it, and grows outwards after
-  // subdivision. Source: by hand. Fails if: corners with several UVs move apart, inward files shrink, or vertices move before
-  // the cage is round.
-  TEST(Displace, CagesStayClosedAndGrowOutwards) {
-    const ScratchFolder folder;
-  }
+// Claim: a closed cage stays closed where the UVs of faces differ, whichever way the file winds it, and grows outwards after
+// subdivision. Source: by hand. Fails if: corners with several UVs move apart, inward files shrink, or vertices move before
+// the cage is round.
+TEST(Displace, CagesStayClosedAndGrowOutwards) {
+  const ScratchFolder folder;
   put_png(folder.file("a.png"), 8, 8, [](int x, int y) { return Bytes{200 + 5 * x, 200 + 3 * y, 255}; });
   const std::string faces[] = {"1 3 2", "1 4 3", "5 6 7", "5 7 8", "1 2 6", "1 6 5",
                                "2 3 7", "2 7 6", "3 4 8", "3 8 7", "4 1 5", "4 5 8"};
