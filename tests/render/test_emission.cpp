@@ -88,7 +88,9 @@ TEST(Emission, LightsAsAQuadLight) {
         const double wanted = mean_of_channel(of_light, kind + c);
         EXPECT_NEAR(mean_of_channel(of_shape, kind + c), wanted, tolerance * wanted)
             << name << ' ' << kind << c;
-        if (kind == "diffuse.") EXPECT_GT(wanted, 1e-3);
+        if (kind == "diffuse.") {
+          EXPECT_GT(wanted, 1e-3);
+        }
       }
   }
 }
