@@ -179,14 +179,22 @@ void SceneEdits::reset() {
 
 std::string SceneEdits::restore(const std::vector<std::string>& edits) {
   if (revision_ > 1 || edits.empty()) return {};
-  Edits kept;
+  Edits kept, before;  // before: edits before the lost one
   std::string lost;
   for (const std::string& edit : edits)
-    if (lost.empty() && !opens_file(edit))
-      kept.push_back(edit);  // later ones may refer to a lost one
-    else if (lost.empty())
+    if (!opens_file(edit)) {
+      kept.push_back(edit);
+      if (lost.empty()) before.push_back(edit);
+    } else if (lost.empty()) {
       lost = edit;
-  scene_ = parsed(kept, look_);
+    }
+  try {
+    scene_ = parsed(kept, look_);
+  } catch (const Error&) {
+    if (lost.empty()) throw;
+    kept = std::move(before);  // a later one refers to the lost one
+    scene_ = parsed(kept, look_);
+  }
   push(std::move(kept));
   ++revision_;
   return lost;
