@@ -18,7 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr double kTarget = .01;
-constexpr std::size_t kTargetColumns = 5;  // columns of the tables of targets
+constexpr std::size_t kColumns = 5;  // columns of the tables of targets
 
 Json estimate_json(const Estimate& estimate) {
   constexpr std::array<const char*, 4> kinds{"none", "interpolated", "extrapolated", "at_most"};
@@ -30,7 +30,7 @@ std::vector<double> error_targets(const std::vector<MeasuredTrade>& points) {
   const auto [low, high] = std::ranges::minmax(points, {}, &MeasuredTrade::error);
   std::vector<double> values = round_values(std::min(low.error, kTarget), std::max(high.error, kTarget));
   std::ranges::sort(values, {}, [](double value) { return std::abs(std::log(value / kTarget)); });
-  values.resize(std::min(values.size(), kTargetColumns));
+  values.resize(std::min(values.size(), kColumns));
   std::ranges::sort(values, std::greater<>());
   return values;
 }
@@ -39,7 +39,7 @@ std::vector<double> error_targets(const std::vector<MeasuredTrade>& points) {
 std::vector<double> time_targets(const std::vector<MeasuredTrade>& points) {
   const auto [low, high] = std::ranges::minmax(points, {}, &MeasuredTrade::cpu);
   std::vector<double> values = round_values(low.cpu, 2.5 * high.cpu);
-  values.resize(std::min(values.size(), kTargetColumns));
+  values.resize(std::min(values.size(), kColumns));
   return values;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "bodies/surface_boundaries.h"
 #include "core/random.h"
 #include "lights/light.h"
 #include "lights/light_tree.h"
@@ -27,6 +26,7 @@ std::uint64_t point_irradiance_seed(const Settings& settings) {
 }
 
 std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::size_t group,
+                                           const OuterBoundary& boundary,
                                            std::span<const SurfaceSample> samples,
                                            std::span<const Light> lights) {
   const Settings& settings = input.scene.settings;
@@ -34,7 +34,7 @@ std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::si
   IrradianceInput traced{input.rays,
                          samples,
                          lights,
-                         boundaries_of(input.scene, input.world)[plan.meshes.front()],
+                         boundary,
                          settings.light_samples,
                          hash_bits(settings.seed, group + 1000),
                          input.monitor,

@@ -53,6 +53,7 @@ SurfaceSamples place_samples(const PrecomputeInput& input, std::size_t group, Su
 std::uint64_t point_irradiance_seed(const Settings& settings);
 /// in    lights: recentred, any of the scene's
 std::vector<LightTransfer> trace_transfers(const PrecomputeInput& input, std::size_t group,
+                                           const OuterBoundary& boundary,
                                            std::span<const SurfaceSample> samples,
                                            std::span<const Light> lights);
 /// A light of the scene in the world's space and unit; that of a shape with its surface.

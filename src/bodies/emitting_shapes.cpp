@@ -16,16 +16,14 @@ namespace {
 
 /// A texture on the only mesh of a world.
 EmittingSurface::Texels texels_of(const Texture& texture, const Shape& shape) {
-  const bool has_whole_faces = std::holds_alternative<QuadShape>(shape.source) ||
-                               std::holds_alternative<BoxShape>(shape.source) ||
-                               std::holds_alternative<SlabShape>(shape.source);
+  const bool is_whole = has_whole_faces(shape);
   const std::optional<SolidSpace> space = is_solid(texture) || std::ranges::any_of(texture.details, is_solid)
                                               ? std::optional(solid_space(solid_to_world(shape)))
                                               : std::nullopt;
   return
       [=](const World& world, std::uint32_t triangle, float u, float v, const std::array<Vec3f, 2>& sides) {
         SurfaceTextures::Place place{0, {}, {sides[0], sides[1]}};
-        place.on_whole_face = has_whole_faces;
+        place.on_whole_face = is_whole;
         if (!world.meshes[0].uvs.empty()) place.uv = surface_uv(world.meshes[0], triangle, u, v);
         if (space) place.solid = solid_place(*space, world, 0, triangle, u, v, sides);
         return color_at(texture, place);

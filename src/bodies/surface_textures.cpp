@@ -52,6 +52,12 @@ float slope_of(float value) {
   return std::abs(slope) < kRoundingOfHalf ? 0 : slope;
 }
 
+/// True for a texture and for its details.
+bool is_of(const Texture& texture, const Texture* one) {
+  return &texture == one ||
+         std::ranges::any_of(texture.details, [&](const Texture& detail) { return &detail == one; });
+}
+
 /// error if a tile of the texture is missing at the centroid of a triangle
 void check_tiles(const Texture& texture, const Mesh& mesh, const std::string& shape) {
   if (is_solid(texture) || texture.source->image()->has_tile(-1, -1)) return;
@@ -195,16 +201,16 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world)
     own.grain = grain_of(scene, shape);
     own.has_uv = uvs_of(scene, shape) != MeshUvs::unread && !world.meshes[m].uvs.empty();
     own.has_tangents = !world.meshes[m].tangents.empty();
-    own.has_whole_faces = std::holds_alternative<QuadShape>(shape.source) ||
-                          std::holds_alternative<BoxShape>(shape.source) ||
-                          std::holds_alternative<SlabShape>(shape.source);
-    const std::vector<const Texture*> textures = textures_of(scene, shape);
+    own.has_whole_faces = has_whole_faces(shape);
+    std::vector<const Texture*> textures = textures_of(scene, shape);
+    for (const Texture* texture : textures) check_tiles(*texture, world.meshes[m], shape.name);
+    // Light and mesh have these, hits do not.
+    for (const std::optional<Texture>* other : {&shape.displacement, &shape.emission_texture})
+      if (*other) std::erase_if(textures, [&](const Texture* texture) { return is_of(**other, texture); });
     if (std::ranges::any_of(textures, [](const Texture* texture) { return is_solid(*texture); }))
       own.space = solid_space(solid_to_world(shape));
-    const bool is_displaced_alone = textures.size() == 1 && shape.displacement;
-    is_empty_ = is_empty_ && !own.has_tint && (textures.empty() || is_displaced_alone) &&
-                own.grain == nullptr && own.partly_opaque == nullptr;
-    for (const Texture* texture : textures) check_tiles(*texture, world.meshes[m], shape.name);
+    is_empty_ = is_empty_ && !own.has_tint && textures.empty() && own.grain == nullptr &&
+                own.partly_opaque == nullptr;
   }
 }
 
@@ -266,13 +272,16 @@ SolidPlace solid_place(const SolidSpace& space, const World& world, std::uint32_
   std::array<Vec3d, 3> corners;
   for (std::size_t k = 0; k < 3; ++k)
     corners[k] = out_of_world(world, Vec3d(surface.positions[surface.triangles[triangle][k]]));
-  const auto inside = [&](const Vec3d& outside) {
-    return Vec3d{dot(space.x, outside), dot(space.y, outside), dot(space.z, outside)};
-  };
+  const auto inside = [&](const Vec3d& outside) { return space.inside(outside); };
   const Vec3d side_u = inside(corners[1] - corners[0]), side_v = inside(corners[2] - corners[0]);
   return {inside(corners[0] - space.origin) + side_u * double(u) + side_v * double(v),
           normalized(cross(side_u, side_v)), inside(Vec3d(sides[0]) * world.unit),
           inside(Vec3d(sides[1]) * world.unit)};
+}
+
+bool has_whole_faces(const Shape& shape) {
+  return std::holds_alternative<QuadShape>(shape.source) || std::holds_alternative<BoxShape>(shape.source) ||
+         std::holds_alternative<SlabShape>(shape.source);
 }
 
 RgbF color_at(const Texture& texture, const SurfaceTextures::Place& place) {

@@ -94,6 +94,8 @@ class SurfaceTextures {
 SolidPlace solid_place(const SolidSpace& space, const World& world, std::uint32_t mesh,
                        std::uint32_t triangle, float u, float v, const std::array<Vec3f, 2>& sides);
 
+/// True if every face of a shape has the whole image of a texture.
+bool has_whole_faces(const Shape& shape);
 /// Colour of a texture at a point, with its details.
 RgbF color_at(const Texture& texture, const SurfaceTextures::Place& place);
 /// Number of a texture; none: no texture.

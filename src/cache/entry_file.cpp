@@ -20,12 +20,12 @@
 namespace opaline {
 namespace {
 
-struct EntryDescriptor {
+struct Descriptor {
   int number = -1;
-  EntryDescriptor(int number_) : number(number_) {}
-  EntryDescriptor(EntryDescriptor&& other) noexcept : number(std::exchange(other.number, -1)) {}
-  EntryDescriptor& operator=(EntryDescriptor&&) = delete;
-  ~EntryDescriptor() {
+  Descriptor(int number_) : number(number_) {}
+  Descriptor(Descriptor&& other) noexcept : number(std::exchange(other.number, -1)) {}
+  Descriptor& operator=(Descriptor&&) = delete;
+  ~Descriptor() {
     if (number >= 0) ::close(number);
   }
 };
@@ -50,7 +50,7 @@ StageKey hash_of(const std::string& listing, std::string_view payload) {
 
 /// An entry's file, and the content of its header.
 struct OpenFile {
-  EntryDescriptor file;
+  Descriptor file;
   std::uint64_t size = 0;
   EntryHeader header;
   StatedEntry stated;
@@ -58,7 +58,7 @@ struct OpenFile {
 };
 
 std::variant<OpenFile, NoEntry, BadEntry> open_file(const std::string& folder, const EntryName& name) {
-  EntryDescriptor file(
+  Descriptor file(
       ::open((folder + '/' + file_name(name)).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
   if (file.number < 0 && errno == ENOENT) return NoEntry{};
   if (file.number < 0 && (errno == ELOOP || errno == ENXIO)) return BadEntry{"is not a regular file"};

@@ -25,16 +25,16 @@ constexpr float kNeighbours = 1.6f;
 // cosine is at least kFlat; otherwise the samples are too sparse for the curvature.
 constexpr float kCrease = 0.7f;
 constexpr double kFlat = 0.99;
-// Shadow edges: neighbours' irradiance differs by kShadowStep or more. Samples store the mean over their cell, so
-// for lights without area only the fraction kShadowStepLeft of the difference is an error. A neighbour at a steeper
+// Shadow edges: neighbours' irradiance differs by kStep or more. Samples store the mean over their cell, so
+// for lights without area only the fraction kStepLeft of the difference is an error. A neighbour at a steeper
 // sine than kStacked belongs to another sheet.
-constexpr float kShadowStep = 0.5f, kShadowStepLeft = 0.2f, kStacked = 0.3f;
+constexpr float kStep = 0.5f, kStepLeft = 0.2f, kStacked = 0.3f;
 // Least determinant of neighbours' moments over the squared trace; collinear neighbours define no slope.
 constexpr float kDegenerate = 1e-3f;
 // Scale of errors: kAtCreases at creases, less with a fraction of samples beside creases below kManyCreases.
-// On smooth surfaces down to kLeastScale, but at least kRough times the roughness, up to 1, as few trials meet a
+// On smooth surfaces down to kLeast, but at least kRough times the roughness, up to 1, as few trials meet a
 // shadow edge.
-constexpr double kAtCreases = 1.6, kManyCreases = 0.02, kLeastScale = 0.03, kMost = 10, kRough = 4;
+constexpr double kAtCreases = 1.6, kManyCreases = 0.02, kLeast = 0.03, kMost = 10, kRough = 4;
 // Mean error of the nodes over the tolerance, minimum and maximum.
 constexpr double kLeastHierarchy = 0.005, kMostHierarchy = 0.15;
 // Mean error of the nodes of `classic` over the estimate from solid angles, minimum and maximum.
@@ -56,7 +56,7 @@ struct Neighbours {
 
   bool creased() const { return other_face && cosines >= kFlat * same_face; }
   /// True at a shadow edge, on a surface without other sheets nearby.
-  bool has_step(std::size_t c) const { return !creased() && !stacked && low[c] < kShadowStep * high[c]; }
+  bool has_step(std::size_t c) const { return !creased() && !stacked && low[c] < kStep * high[c]; }
 };
 
 Neighbours neighbours_of(const Octree& tree, std::uint32_t sample, float spacing) {
@@ -96,7 +96,7 @@ void add_roughness(const Octree& tree, std::uint32_t sample, float spacing,
   const TreeSample& own = tree.samples[sample];
   const RgbF e = irradiance_of(own), off = e - near.mean;
   for (std::size_t c = 0; c < 3; ++c) {
-    const float left = near.has_step(c) ? 1 - from_points[c] * (1 - kShadowStepLeft * kShadowStepLeft) : 1;
+    const float left = near.has_step(c) ? 1 - from_points[c] * (1 - kStepLeft * kStepLeft) : 1;
     sums.residual[c] += left * off[c] * off[c] * own.area;
   }
   sums.square += e * e * own.area;
@@ -254,8 +254,7 @@ CloudError tell_cloud_error(const CloudErrorInput& input) {
     result.far_squares[c] = float(squares / (sum * sum));
     if (rough.square[c] > 0) result.roughness[c] = std::sqrt(rough.residual[c] / rough.square[c]);
     const Differences d = differences(fine, coarse, wide, refined, c);
-    const double least =
-        std::max({kLeastScale, creases, std::min(1.0, kRough * double(result.roughness[c]))});
+    const double least = std::max({kLeast, creases, std::min(1.0, kRough * double(result.roughness[c]))});
     if (input.kernel.split && d.expected > 0)
       result.scale[c] = float(std::clamp(d.wider / d.expected, least, kMost));
     if (!classic.empty()) result.flattened[c] = flattened_part(fine, classic, c);

@@ -57,9 +57,9 @@ struct Refined {
   std::vector<std::uint32_t> nodes;
 };
 
-class CacheBuilder {
+class Builder {
  public:
-  explicit CacheBuilder(const SurfaceCacheInput& input) : input_(input) {
+  explicit Builder(const SurfaceCacheInput& input) : input_(input) {
     if (!input.add_own_light) cache_.own_irradiance = input.kernel.own_irradiance;
     normals_ = make_patches(input.world, input.meshes, kReach * double(input.kernel.radius), cache_);
   }
@@ -350,7 +350,7 @@ class CacheBuilder {
 
 std::optional<SurfaceCache> make_surface_cache(const SurfaceCacheInput& input) {
   if (least_cache_places(input.world, input.meshes, input.kernel) > input.most_places) return {};
-  return CacheBuilder(input).build();
+  return Builder(input).build();
 }
 
 std::size_t least_cache_places(const World& world, std::span<const std::uint32_t> meshes,

@@ -77,9 +77,9 @@ struct Sums {
 
 // Writes the nodes in depth-first order. Parts of the tree are counted and built in parallel; the nodes above
 // them are summed last. The division depends on the samples alone.
-class OctreeBuilder {
+class Builder {
  public:
-  OctreeBuilder(Octree& tree, std::vector<std::uint64_t> keys) : tree_(tree), keys_(std::move(keys)) {}
+  Builder(Octree& tree, std::vector<std::uint64_t> keys) : tree_(tree), keys_(std::move(keys)) {}
 
   void build() {
     cut(0, std::uint32_t(keys_.size()), 0, kNoParent);
@@ -310,7 +310,7 @@ Octree build_octree(std::vector<FluxSample> samples) {
   std::vector<std::uint64_t> keys(order.size());
   std::ranges::transform(order, keys.begin(), &Keyed::key);
   std::vector<Keyed>().swap(order);
-  OctreeBuilder(tree, std::move(keys)).build();
+  Builder(tree, std::move(keys)).build();
   list_children(tree);
   return tree;
 }

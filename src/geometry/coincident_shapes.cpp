@@ -14,7 +14,7 @@
 namespace opaline {
 namespace {
 
-constexpr double kShapeRounding = 1e-6;  // fraction of a shape's diagonal
+constexpr double kRounding = 1e-6;  // fraction of a shape's diagonal
 constexpr std::size_t kPoints = 16;
 constexpr std::size_t kMostNamed = 3;
 
@@ -105,7 +105,7 @@ std::vector<std::optional<std::size_t>> firsts_of(const World& world) {
     const Bounds& box = world.boxes[i];
     const double diagonal = length(box.high - box.low);
     if (!(diagonal > 0)) continue;
-    const double step = kShapeRounding * std::exp2(std::ilogb(diagonal)), reach = step / world.unit;
+    const double step = kRounding * std::exp2(std::ilogb(diagonal)), reach = step / world.unit;
     std::vector<std::size_t>& others = by_bounds[key_of(box, step)];
     const auto same = std::ranges::find_if(others, [&](std::size_t other) {
       return coincide(world.meshes[i], world.meshes[other], reach) &&
@@ -145,7 +145,7 @@ std::vector<std::string> warnings_of_coincident_faces(const Scene& scene, const 
   std::size_t count = 0;
   const std::vector<std::optional<std::size_t>> firsts = firsts_of(world);
   find_coplanar_faces(
-      world, kShapeRounding,
+      world, kRounding,
       [&](std::size_t a, std::size_t b) { return firsts[a] || firsts[b] || look_alike(scene, world, a, b); },
       [&](const CoplanarFaces& faces) {
         if (!sides.are_seen(faces)) return false;

@@ -50,9 +50,7 @@ std::vector<double> side_lengths(const Mesh& mesh) {
 /// Heights at the vertices, by their positions in the space of the shape.
 std::vector<float> solid_heights(const Mesh& mesh, const Texture& texture, const Transform& to_world) {
   const SolidSpace space = solid_space(to_world);
-  const auto inside = [&](const Vec3d& outside) {
-    return Vec3d{dot(space.x, outside), dot(space.y, outside), dot(space.z, outside)};
-  };
+  const auto inside = [&](const Vec3d& outside) { return space.inside(outside); };
   const auto inside_normal = [&](const Vec3d& normal) {
     return normalized(Vec3d{dot(to_world.x, normal), dot(to_world.y, normal), dot(to_world.z, normal)});
   };

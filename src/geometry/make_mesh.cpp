@@ -144,9 +144,9 @@ CheckedMesh make_displaced(const Shape& shape, SourceMesh mesh, CheckSettings se
   after.report = std::move(before.report);
   after.report.zero_area_dropped += dropped;
   if (after.mesh.positions.size() < kFewVertices)
-    after.report.warnings.push_back(
-        settings.name + ": displacement moves " + std::to_string(after.mesh.positions.size()) +
-        " vertices alone; a finer mesh shows more of it, such as a file with a larger 'subdivide'");
+    after.report.warnings.push_back(settings.name + ": displacement moves only " +
+                                    std::to_string(after.mesh.positions.size()) +
+                                    " vertices; use a finer mesh, or a mesh file with a larger 'subdivide'");
   return after;
 }
 

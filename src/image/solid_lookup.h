@@ -13,6 +13,8 @@ namespace opaline {
 struct SolidSpace {
   Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< rows of the linear map to the space of the shape
   Vec3d origin{};                            ///< origin of that space, mm
+
+  Vec3d inside(const Vec3d& vector) const { return {dot(x, vector), dot(y, vector), dot(z, vector)}; }
 };
 
 /// A point in the space of a shape, mm.

@@ -58,12 +58,12 @@ void check_channels(const Value& file, const std::optional<Value>& channel, cons
 }
 
 /// Colours become values at the document's wavelengths.
-// A grey scale commutes with the mixing; beside details it stays apart, as overlays precede it.
 void mix_channels(const Value& value, TexturePart part, bool has_details, Texture& texture) {
   const ThreeWavelengths& wavelengths = *value.wavelengths();
   if (part == TexturePart::color) {
     texture.from_rgb = wavelengths.from_rgb;
     const Vec3d& scale = texture.scale;
+    // A grey scale commutes with the mixing; beside details it stays apart, as overlays precede it.
     if (has_details && scale.x == scale.y && scale.y == scale.z) return;
     for (Rgb& row : *texture.from_rgb) row = row * texture.scale;
     texture.scale = Vec3d(1);

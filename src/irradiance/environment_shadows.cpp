@@ -7,7 +7,7 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kShadowReach = 2;  // distance of blocks with rays used for a block
+constexpr std::size_t kReach = 2;  // distance of blocks with rays used for a block
 // Weights of the surrounding blocks and of all blocks, in rays; uncritical.
 constexpr float kOfAround = 1, kOfAll = .5f;
 
@@ -27,15 +27,15 @@ void EnvironmentShadows::spread(std::vector<float>& counts) {
   for (std::size_t r = 0; r < rows; ++r) {
     const float* const row = &counts[r * columns];
     float sum = 0;
-    for (std::size_t k = 0; k <= 2 * kShadowReach; ++k) sum += row[k % columns];
+    for (std::size_t k = 0; k <= 2 * kReach; ++k) sum += row[k % columns];
     for (std::size_t c = 0; c < columns; ++c) {
-      spread_[r * columns + (c + kShadowReach) % columns] = sum;
-      sum += row[(c + 2 * kShadowReach + 1) % columns] - row[c];
+      spread_[r * columns + (c + kReach) % columns] = sum;
+      sum += row[(c + 2 * kReach + 1) % columns] - row[c];
     }
   }
   std::ranges::fill(counts, 0.0f);
   for (std::size_t r = 0; r < rows; ++r)
-    for (std::size_t k = r - std::min(r, kShadowReach); k <= std::min(r + kShadowReach, rows - 1); ++k)
+    for (std::size_t k = r - std::min(r, kReach); k <= std::min(r + kReach, rows - 1); ++k)
       for (std::size_t c = 0; c < columns; ++c) counts[r * columns + c] += spread_[k * columns + c];
 }
 

@@ -44,7 +44,6 @@ class EmittingSurface {
   RgbF texel(const Point& point, const std::array<Vec3f, 2>& sides = {}) const;
   float clearance() const { return clearance_; }
   std::uint64_t hash() const { return hash_; }
-  double area() const { return area_; }
   const Bounds& box() const { return box_; }
 
  private:

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "diffusion/diffuse_profile.h"
+#include "irradiance/shadow_batch.h"
 #include "lights/light.h"
 #include "render/camera_rays.h"
 #include "scene/scene_properties.h"
@@ -181,13 +182,12 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
   std::vector<std::string> texts;
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     const Light& light = scene.lights[l];
-    if (l > 0 && share_rays(scene.lights[l - 1], light)) continue;  // another channel of an environment
+    if (l > 0 && share_rays(scene.lights[l - 1], light)) continue;  // another channel of a texture
     const std::optional<Vec3d> place = is_of_shape(light) ? std::nullopt : extent(light).center;
     const double distance = place ? length(*place - middle) : 0;
-    const bool is_dark = std::ranges::all_of(
-        scene.lights.begin() + std::ptrdiff_t(l), scene.lights.end(), [&](const Light& other) {
-          return emission(other) == Rgb{} || (&other != &light && !share_rays(light, other));
-        });
+    const std::span<const Light> channels = std::span(scene.lights).subspan(l);
+    const bool is_dark = std::ranges::all_of(channels.first(sharing_rays(channels)),
+                                             [](const Light& one) { return emission(one) == Rgb{}; });
     if (is_dark)
       texts.push_back(fmt::format("the light {} emits nothing", light.name));
     else if (distance > kFarAway * world.diagonal * world.unit)

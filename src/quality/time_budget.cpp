@@ -17,8 +17,8 @@
 namespace opaline {
 namespace {
 
-constexpr double kFewestSamples = 2500;      // samples
-constexpr std::size_t kBudgetPoints = 1000;  // enough points of a small image
+constexpr double kFewest = 2500;             // samples
+constexpr std::size_t kEnoughPoints = 1000;  // enough points of a small image
 constexpr double kFirstTolerance = .01;
 // Maximum factor of the samples of a small image; these cost a few per cent then.
 constexpr double kBeyond = 8;
@@ -57,7 +57,7 @@ class BudgetSearch {
  public:
   BudgetSearch(Session& session, Scene scene, double seconds, Monitor* monitor)
       : search_{session, std::move(scene), monitor}, seconds_(seconds) {
-    search_.enough_points = kBudgetPoints;
+    search_.enough_points = kEnoughPoints;
   }
 
   TimeBudget run(const FinishPicture& finish);
@@ -92,7 +92,7 @@ class BudgetSearch {
 };
 
 void BudgetSearch::try_first(const FinishPicture& finish) {
-  const double samples = std::min(kFewestSamples, search_.most_samples / 4);
+  const double samples = std::min(kFewest, search_.most_samples / 4);
   search_.place(samples);
   Image picture = search_.first_picture();
   Tried& first = tried_.emplace_back(tried(search_.session, samples, std::move(picture)));

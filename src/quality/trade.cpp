@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::array kFactors{1 / 16.0, 1 / 8.0, 1 / 4.0, 1 / 2.0,
                               1.0,      2.0,     4.0};  // factors of the scene's samples
-constexpr double kFewestOfTrade = 300;                  // minimum samples of an image
-constexpr double kTradePixels = 128 * 128;
+constexpr double kFewest = 300;                         // minimum samples of an image
+constexpr double kProbePixels = 128 * 128;
 
 /// Rounds to few digits, for readable settings.
 double rounded(double value, double digits) {
@@ -45,7 +45,7 @@ void Trade::measure(TradePoint& point) {
   search.scene = given;
   if (!point.is_given) set_point(search.scene.settings, point);
   search.prepare();
-  RenderResult result = probe_picture(search.session, probe_scene(search.scene, kTradePixels),
+  RenderResult result = probe_picture(search.session, probe_scene(search.scene, kProbePixels),
                                       ++search.pictures, search.monitor, search.bounced);
   point.all_samples = search.planned_samples();
   point.error = estimated_relative_error(result.image, result.translucent);
@@ -60,7 +60,7 @@ TradePoint Trade::lambert() {
   search.bounced.reset();
   search.bounced_seconds = 0;
   search.prepare();
-  const Image picture = probe_picture(search.session, probe_scene(search.scene, kTradePixels),
+  const Image picture = probe_picture(search.session, probe_scene(search.scene, kProbePixels),
                                       ++search.pictures, search.monitor, search.bounced)
                             .image;
   TradePoint point;
@@ -98,7 +98,7 @@ void try_trade(Session& session, Scene scene, const std::function<void(const Tra
   double error = 0;  // expected of the next
   for (const double factor : kFactors) {
     const bool is_given = factor == 1;
-    if (factor * double(given) < kFewestOfTrade && !is_given) continue;
+    if (factor * double(given) < kFewest && !is_given) continue;
     if (factor > 1 && factor * double(largest) > double(settings.max_samples)) break;
     TradePoint point;
     point.is_given = is_given;

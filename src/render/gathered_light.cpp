@@ -21,7 +21,7 @@ struct Rays {
   std::vector<Met> met;
 };
 
-Ray gathering_ray(const SurfacePoint& point, const Vec3f& direction) {
+Ray leaving(const SurfacePoint& point, const Vec3f& direction) {
   return {point.position + point.geometric * point.offset, direction};
 }
 
@@ -40,7 +40,7 @@ void add_rays(const GatherInput& input, std::size_t p, std::uint32_t place, Rays
     const Vec3f direction =
         x * (radius * float(std::cos(angle))) + y * (radius * float(std::sin(angle))) + point.normal * cosine;
     if (!(dot(direction, point.geometric) > 0)) continue;
-    drawn.rays.push_back({gathering_ray(point, direction), {}});
+    drawn.rays.push_back({leaving(point, direction), {}});
     drawn.met.push_back({direction, 0, cosine, 0, 0, 0, 0, place, std::uint32_t(k)});
   }
 }
@@ -72,7 +72,7 @@ std::vector<TracedRay> rays_again(const GatherInput& input, std::size_t begin, s
   std::vector<TracedRay> rays;
   rays.reserve(met.size());
   for (const Met& m : met) {
-    rays.push_back({gathering_ray(input.points[begin + m.point], m.direction), {}});
+    rays.push_back({leaving(input.points[begin + m.point], m.direction), {}});
     TracedRay& traced = rays.back();
     traced.ray.far = m.far;
     traced.hit.mesh = m.mesh;

@@ -405,6 +405,9 @@ void Shader::add_reflections(const GlossyHits& glossy, const Pass& pass, HeldVie
     for (std::size_t l = 0; l < lights_.size(); ++l) {
       const Light& light = lights_[l];
       if (is_delta(light)) continue;
+      if (const auto* own = std::get_if<ShapeLight>(&light.source);
+          own != nullptr && own->shape != mesh_hit.mesh)
+        continue;  // hidden, or beside the ray
       RgbF radiance = seen_radiance(coat != nullptr ? unit_lights_[l] : light, ray, is_free);
       if (radiance == RgbF{}) continue;
       const float balanced =

@@ -127,9 +127,9 @@ std::vector<Body> draft_groups(const PrecomputeInput& input) {
     SurfaceSamples surface =
         draft_samples(input.world, plan.meshes, std::max(kFewest, plan.samples / kFewer));
     SplitKernel kernel = body_kernel(profile, surface.spacing(), input.world, input.scene);
-    std::vector<LightTransfer> transfers = trace_transfers(input, g, surface.samples, lights);
-    groups.push_back(
-        {plan, profile, boundaries[plan.meshes.front()], std::move(surface), std::move(transfers)});
+    const OuterBoundary& boundary = boundaries[plan.meshes.front()];
+    std::vector<LightTransfer> transfers = trace_transfers(input, g, boundary, surface.samples, lights);
+    groups.push_back({plan, profile, boundary, std::move(surface), std::move(transfers)});
     Body& body = groups.back();
     body.entering = entering_tints(textures, body.surface.samples);
     set_hierarchical_state(body, entered_irradiance(body, lights), std::move(kernel));

@@ -171,7 +171,8 @@ void Session::State::update_lights(Body& body, BodyKeys& known, const Precompute
   }
   if (!missing.empty()) {
     const std::uint64_t before = rays_->statistics().rays;
-    std::vector<LightTransfer> traced = trace_transfers(input, group, body.surface.samples, missing);
+    std::vector<LightTransfer> traced =
+        trace_transfers(input, group, body.boundary, body.surface.samples, missing);
     work_.sample_rays += rays_->statistics().rays - before;
     work_.lights_traced += missing.size();
     for (std::size_t i = 0; i < missing.size(); ++i) {

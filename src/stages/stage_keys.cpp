@@ -74,13 +74,11 @@ StageKey carried_samples_key(const StageKey& from, const BodyPlan& group, std::s
   return key.key();
 }
 
-void add_fuzz(KeyBuilder& key, const Fuzz& fuzz, bool colors) {
+void add_fuzz(KeyBuilder& key, const Fuzz& fuzz) {
   if (!(fuzz.weight > 0)) return;
   key.add(std::string("fuzz")).add(fuzz.weight).add(fuzz.roughness);
   for (const auto& texture : {&fuzz.weight_texture, &fuzz.roughness_texture})
     if (*texture) add_to_key(key.add(texture == &fuzz.weight_texture), **texture);
-  if (colors) key.add(fuzz.color);
-  if (colors && fuzz.color_texture) add_to_key(key.add(std::string("color")), *fuzz.color_texture);
 }
 
 void add_fuzz(KeyBuilder& key, const Scene& scene, const World& world, const Fuzz& fuzz,
@@ -135,12 +133,12 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
     if (shape.medium) {
       const Medium& medium = input.scene.media[*shape.medium];
       for_each_textured(medium, add_value);
-      add_fuzz(key.add(medium.texture_mix).add(medium.eta), medium.fuzz, true);
+      add_fuzz(key.add(medium.texture_mix).add(medium.eta), medium.fuzz);
       key.add(medium.grain.anisotropy).add(medium.grain.rotation);
     } else if (const auto& gloss = shape.gloss) {
       key.add(gloss->eta).add(gloss->grain.anisotropy).add(gloss->grain.rotation);
     }
-    add_fuzz(key, shape.fuzz, true);
+    add_fuzz(key, shape.fuzz);
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
     if (uvs_of(input.scene, shape) != MeshUvs::unread) add_coordinates(key, input.world.meshes[i]);
     add_solid_space(key, input.scene, i);

@@ -54,9 +54,9 @@ StageKey transfer_key(const PrecomputeInput& input, const StageKey& samples, std
 StageKey transmitted_key(const StageKey& samples, std::span<const StageKey> transfers,
                          std::span<const Light> lights, const StageKey& tint);
 
-/// Adds fuzz, unless its weight is 0: a scene without fuzz keeps its keys.
-/// in    colors: with the colour; light past the fuzz is independent of it
-void add_fuzz(KeyBuilder& key, const Fuzz& fuzz, bool colors = false);
+/// Adds fuzz without its colour, as light past the fuzz is independent of it, unless its weight is 0: a scene without fuzz
+/// keeps its keys.
+void add_fuzz(KeyBuilder& key, const Fuzz& fuzz);
 /// The same, with the coordinates of its textures on some meshes.
 void add_fuzz(KeyBuilder& key, const Scene& scene, const World& world, const Fuzz& fuzz,
               std::span<const std::uint32_t> meshes);

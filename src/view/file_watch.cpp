@@ -34,7 +34,10 @@ void FileWatch::watch(const std::vector<std::string>& files) {
         std::filesystem::weakly_canonical(std::filesystem::absolute(file), missing);
     const int watch = ::inotify_add_watch(events_.native_handle(), path.parent_path().c_str(),
                                           IN_CLOSE_WRITE | IN_MOVED_TO);
-    if (watch >= 0) paths[watch][path.filename().string()] = file;
+    if (watch >= 0)
+      paths[watch][path.filename().string()] = file;
+    else
+      files_.clear();  // its folder may come
   }
   for (const auto& [watch, old] : paths_)
     if (!paths.contains(watch)) ::inotify_rm_watch(events_.native_handle(), watch);
@@ -60,6 +63,8 @@ void FileWatch::note(std::size_t bytes) {
   for (std::size_t at = 0; at + sizeof(inotify_event) <= bytes;) {
     inotify_event event;
     std::memcpy(&event, bytes_.data() + at, sizeof event);
+    if ((event.mask & IN_IGNORED) != 0)
+      files_.clear();  // a folder was removed; the next edit watches a new one
     const auto folder = paths_.find(event.wd);
     if (folder != paths_.end() && event.len > 0)
       if (const auto path = folder->second.find(bytes_.data() + at + sizeof event);

@@ -2,7 +2,6 @@
 // Edits of keyed values, and of the scene's camera by the free one.
 #include <utility>
 
-#include "input/load_scene.h"
 #include "view/keyed_values.h"
 #include "view/scene_edits.h"
 

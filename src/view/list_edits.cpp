@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "core/log.h"
-#include "input/load_scene.h"
 #include "opaline/error.h"
 #include "values/json_tree.h"
 #include "view/edit_paths.h"
@@ -50,13 +49,12 @@ bool is_name_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
 }
 
-/// Name of a shape in paths of edits: its own if it is plain and no other's, else its index, which changes with other edits.
+/// Name of a shape in paths of edits: its own if it is plain, else its index, although other edits change that.
 std::string path_name(const Json& shapes, std::size_t i) {
   const std::string name = shapes[i].value("name", "");
   const bool is_plain = !name.empty() && std::ranges::all_of(name, is_name_character) &&
                         !std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; });
-  const auto has_name = [&](const Json& shape) { return shape.value("name", "") == name; };
-  return is_plain && std::ranges::count_if(shapes, has_name) == 1 ? name : std::to_string(i);
+  return is_plain ? name : std::to_string(i);
 }
 
 void check_new_name(const std::string& file, const Json& media, const std::string& name) {

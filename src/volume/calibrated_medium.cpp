@@ -27,9 +27,9 @@ double entering_integral(double eta, const Function& of_inside) {
 
 // By the fluence of diffusion of light entering at one cosine, two exponentials, and of light from afar, linear.
 CalibratedMedium::Emission emission_of(double albedo, double eta, double mismatch, const HalfSpace& exact) {
-  constexpr double kCosineOutside = .7;  // cosine of entry, with little effect
+  constexpr double kOutside = .7;        // cosine of entry, with little effect
   constexpr double kDiffusion = 1. / 3;  // all lengths in mean free paths
-  const double entry = refracted_cosine(kCosineOutside, 1 / eta), decay = std::sqrt(3 * (1 - albedo));
+  const double entry = refracted_cosine(kOutside, 1 / eta), decay = std::sqrt(3 * (1 - albedo));
   const double source = 1 / entry + (std::abs(1 / entry - decay) < 1e-3 ? 2e-3 : 0);
   const auto emitted = [&](const auto& of_cosine) {
     return albedo / (2 * eta * eta) * entering_integral(eta, of_cosine);

@@ -90,7 +90,7 @@ struct FittedMean {
   Terms terms;  ///< averaged over its cell
 };
 
-constexpr std::size_t kCellsAtOnce = 256;  // cells
+constexpr std::size_t kChunk = 256;  // cells
 
 /// Centroids instead of positions.
 std::vector<SurfaceSample> at_centroids(std::span<const SurfaceSample> samples) {
@@ -111,9 +111,9 @@ CellWeights::Places::Places(std::span<const SurfaceSample> samples)
 }
 
 CellWeights::CellWeights(std::span<const SurfaceSample> samples)
-    : places_(std::make_shared<const Places>(samples)), chunks_(chunk_count(samples.size(), kCellsAtOnce)) {
+    : places_(std::make_shared<const Places>(samples)), chunks_(chunk_count(samples.size(), kChunk)) {
   const CancelCheck check;
-  parallel_chunks(samples.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end, std::size_t c) {
+  parallel_chunks(samples.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
     check();
     chunks_[c] = chunk_of(*places_, samples, begin, end);
     chunks_[c].neighbours.shrink_to_fit();
@@ -177,9 +177,9 @@ CellFit::CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> m
                  std::span<const RgbF> errors)
     : places_(std::make_shared<const CellWeights::Places>(samples)), fits_(means.size()) {
   std::vector<Rgb> surprises(means.size());
-  std::vector<CellWeights::Chunk> chunks(chunk_count(means.size(), kCellsAtOnce));
+  std::vector<CellWeights::Chunk> chunks(chunk_count(means.size(), kChunk));
   const CancelCheck check;
-  parallel_chunks(means.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end, std::size_t c) {
+  parallel_chunks(means.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
     check();
     chunks[c] = CellWeights::chunk_of(*places_, samples, begin, end);
     fit(chunks[c], begin, means, errors, surprises);
@@ -191,7 +191,7 @@ CellFit::CellFit(std::span<const SurfaceSample> samples, std::span<const RgbF> m
 CellFit::CellFit(const CellWeights& weights, std::span<const RgbF> means, std::span<const RgbF> errors)
     : places_(weights.places_), fits_(means.size()) {
   std::vector<Rgb> surprises(means.size());
-  parallel_chunks(means.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t, std::size_t c) {
+  parallel_chunks(means.size(), kChunk, [&](std::size_t begin, std::size_t, std::size_t c) {
     fit(weights.chunks_[c], begin, means, errors, surprises);
   });
   if (!errors.empty()) smooth(weights.chunks_, std::move(surprises));
@@ -239,7 +239,7 @@ void CellFit::smooth(std::span<const CellWeights::Chunk> chunks, std::vector<Rgb
   const std::span<const NearestSample::Member> members = places_->middles.members();
   std::vector<Rgb> smoothed(surprises.size());
   for (int round = 0; round < kSurpriseRounds; ++round) {
-    parallel_chunks(members.size(), kCellsAtOnce, [&](std::size_t begin, std::size_t end, std::size_t c) {
+    parallel_chunks(members.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t c) {
       std::size_t next = 0;
       for (std::size_t m = begin; m < end; ++m) {
         Rgb sum{};

@@ -13,12 +13,12 @@
 namespace opaline {
 namespace {
 
-constexpr float kNarrowest = 2;          // reach of an exit, spacings of the samples
-constexpr float kWidest = 1.5f;          // the same, lattice cells
-constexpr std::size_t kNearest = 12;     // exits within its reach, per direction of the light
-constexpr float kSameSheet = .5f;        // least cosine between normals of one sheet
-constexpr double kFarthestCrossing = 8;  // mean free paths
-constexpr double kLeastShare = 1e-4;     // least flux of a ray, over the largest
+constexpr float kNarrowest = 2;       // reach of an exit, spacings of the samples
+constexpr float kWidest = 1.5f;       // the same, lattice cells
+constexpr std::size_t kNearest = 12;  // exits within its reach, per direction of the light
+constexpr float kSameSheet = .5f;     // least cosine between normals of one sheet
+constexpr double kFarthest = 8;       // mean free paths
+constexpr double kLeastShare = 1e-4;  // least flux of a ray, over the largest
 
 struct Exit {
   Vec3f position, normal;
@@ -126,7 +126,7 @@ class Crossing {
     const Way way{space_.in_lattice(from.position),
                   refracted_inward(-outward, Vec3d(from.normal), space_.eta())};
     const BodyPaths::End end =
-        paths_.follow(way, 0, kFarthestCrossing * longest_, cell, [&](double, double step, std::uint32_t at) {
+        paths_.follow(way, 0, kFarthest * longest_, cell, [&](double, double step, std::uint32_t at) {
           for (std::size_t c = 0; c < 3; ++c) flux[c] *= std::exp(-step * space_.media_of(at)[c].extinction);
         });
     if (!end.exit) return {};

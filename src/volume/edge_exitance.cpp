@@ -11,11 +11,11 @@
 namespace opaline {
 namespace {
 
-constexpr double kFarthestEdge = 3;      // mean free paths
-constexpr double kSameSheetAtEdge = .9;  // least agreement of normals of one sheet
-constexpr double kWeight = 6;            // per fraction of light from another part of the surface
-constexpr double kLeastLeft = .02;       // share of a path to follow
-constexpr double kLeastBeam = .05;
+constexpr double kFarthest = 3;     // mean free paths
+constexpr double kSameSheet = .9;   // least agreement of normals of one sheet
+constexpr double kWeight = 6;       // per fraction of light from another part of the surface
+constexpr double kLeastLeft = .02;  // share of a path to follow
+constexpr double kLeastReflected = .05;
 constexpr double kLeastWeight = .1;
 constexpr double kOfThin = 4;   // subtracted, per share of light from an opposite sheet
 constexpr int kLegs = 2;        // pieces of a path, reflected at the surface once
@@ -71,7 +71,7 @@ bool EdgeExitance::has_own_sheet_only(const BoundaryElement& from, const Vec3d& 
   const std::uint32_t cell = space_.grid.at(Vec3f(position));
   return cell != DiffusionGrid::kNone &&
          std::ranges::all_of(space_.elements_of.of(cell),
-                             [&](std::uint32_t e) { return agreement(from, e) > kSameSheetAtEdge; });
+                             [&](std::uint32_t e) { return agreement(from, e) > kSameSheet; });
 }
 
 // Along the flattest paths, if they may leave: by some points on them.
@@ -79,7 +79,7 @@ bool EdgeExitance::is_near_other_sheet(std::size_t element) const {
   const std::uint32_t cell = space_.attached[element].cell;
   if (cell == DiffusionGrid::kNone) return false;
   const BoundaryElement& from = space_.boundary.elements[element];
-  const double farthest = kFarthestEdge * longest_;
+  const double farthest = kFarthest * longest_;
   const std::array<Vec3d, 3> frame = frame_of(from.normal);
   for (std::size_t k = kPaths - kOfRing; k < kPaths; ++k) {
     const Way way = path_from(from, frame, k);
@@ -88,7 +88,7 @@ bool EdgeExitance::is_near_other_sheet(std::size_t element) const {
         }))
       continue;
     const BodyPaths::End end = paths_.follow(way, 0, farthest, cell, [](double, double, std::uint32_t) {});
-    if (end.exit && std::abs(agreement(from, end.exit->element)) < kSameSheetAtEdge) return true;
+    if (end.exit && std::abs(agreement(from, end.exit->element)) < kSameSheet) return true;
   }
   return false;
 }
@@ -103,8 +103,7 @@ void EdgeExitance::add_sheet(std::uint32_t element, Paths& paths) const {
   constexpr std::size_t kMost = 4;
   if (paths.sheets.size() == kMost) return;
   for (const std::uint32_t other : paths.sheets)
-    if (dot(space_.boundary.elements[other].normal, space_.boundary.elements[element].normal) >
-        kSameSheetAtEdge)
+    if (dot(space_.boundary.elements[other].normal, space_.boundary.elements[element].normal) > kSameSheet)
       return;
   paths.sheets.push_back(element);
 }
@@ -139,13 +138,13 @@ void EdgeExitance::follow(std::size_t sample, Paths& paths) const {
         add(share, start + .5 * step);
         if (emitted.x + emitted.y + emitted.z > kOfNode * weight) end_node(at);
       };
-      const BodyPaths::End end = paths_.follow(way, 0, kFarthestEdge * longest_, cell, emit);
-      if (!end.exit) add(left, kFarthestEdge * longest_);
+      const BodyPaths::End end = paths_.follow(way, 0, kFarthest * longest_, cell, emit);
+      if (!end.exit) add(left, kFarthest * longest_);
       end_node(end.cell);
       if (!end.exit) break;
       const float agreement_there = agreement(from, end.exit->element);
-      if (leg == 0 && agreement_there < kSameSheetAtEdge)
-        (agreement_there > -kSameSheetAtEdge ? paths.beside : paths.opposite) += left;
+      if (leg == 0 && agreement_there < kSameSheet)
+        (agreement_there > -kSameSheet ? paths.beside : paths.opposite) += left;
       add_sheet(end.exit->element, paths);
       const auto [further, reflectance] = paths_.reflected(way, *end.exit);
       left *= reflectance;
@@ -169,7 +168,7 @@ EdgeExitance::Entry EdgeExitance::back_to_sheet(const Vec3d& position, const Vec
     const Vec3d normal(plane.normal);
     length = std::max(0., dot(space_.in_lattice(plane.position) - position, normal) /
                               std::max(BodyPaths::kLeastCosine, -dot(along, normal)));
-    if (length * space_.lattice.cell > kFarthestEdge * longest_) return {};
+    if (length * space_.lattice.cell > kFarthest * longest_) return {};
     const Vec3d entry = position - along * length;
     const std::uint32_t before = element;
     double nearest = INFINITY;
@@ -179,7 +178,7 @@ EdgeExitance::Entry EdgeExitance::back_to_sheet(const Vec3d& position, const Vec
       for (const std::uint32_t e : space_.elements_of.of(cell)) {
         const BoundaryElement& other = space_.boundary.elements[e];
         const Vec3d apart = space_.in_lattice(other.position) - entry, other_normal(other.normal);
-        if (dot(other_normal, sheet_normal) < kSameSheetAtEdge) {
+        if (dot(other_normal, sheet_normal) < kSameSheet) {
           if (dot(apart, normal) < 0 && dot(apart, other_normal) < 0) return {};  // beyond an edge
           continue;
         }
@@ -213,7 +212,7 @@ bool EdgeExitance::is_lit(std::uint32_t sheet, const TransmittedLight& source) c
   return cell != DiffusionGrid::kNone &&
          std::ranges::any_of(space_.grid.links(cell), [&](const DiffusionGrid::Link& link) {
            return std::ranges::any_of(space_.elements_of.of(link.to), [&](std::uint32_t e) {
-             return enters(e) && agreement(space_.boundary.elements[sheet], e) > kSameSheetAtEdge;
+             return enters(e) && agreement(space_.boundary.elements[sheet], e) > kSameSheet;
            });
          });
 }
@@ -241,7 +240,7 @@ std::vector<std::vector<EdgeExitance::Beam>> EdgeExitance::beams_of(const Paths&
         beam.mirror = other;
         most = std::max(most, beam.share);
       }
-      if (most > kLeastBeam) beams.insert(beams.end() - 1, std::move(reflected));
+      if (most > kLeastReflected) beams.insert(beams.end() - 1, std::move(reflected));
     }
   }
   return beams;

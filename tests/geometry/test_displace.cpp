@@ -124,7 +124,7 @@ TEST(Displace, CagesStayClosedAndGrowOutwards) {
 }
 
 // Claim: noise displaces by its value at the vertex in the space of the shape, without UVs; a coarse mesh has a hint, a fine
-// one none. Source: SolidNoise. Tolerance: 1e-3 of the height, for computed normals. Fails if: the position is that in the
+// one none. Source: SolidNoise. Tolerance: 1e-2 of the height, for computed normals. Fails if: the position is that in the
 // world, or after the displacement.
 TEST(Displace, NoiseOfTheSpaceOfTheShape) {
   const ScratchFolder folder;
@@ -146,7 +146,7 @@ TEST(Displace, NoiseOfTheSpaceOfTheShape) {
   EXPECT_TRUE(rough.report.warnings.empty());
   const CheckedMesh box = displaced_mesh(folder, R"("box": {"low": [0, 0, 0], "high": [9, 9, 9]})" + height);
   ASSERT_EQ(box.report.warnings.size(), 1u);
-  EXPECT_NE(box.report.warnings[0].find("displacement moves 8 vertices alone"), std::string::npos)
+  EXPECT_NE(box.report.warnings[0].find("displacement moves only 8 vertices"), std::string::npos)
       << box.report.warnings[0];
 }
 

@@ -210,7 +210,7 @@ TEST(BumpMap, LeavesAFurnaceWhite) {
 // lights, too. Source: Veach & Guibas 1995, the weights; bench: brightest pixel over the 99.9th percentile 8.8 without them,
 // 1.5 with. Tolerance: 3 times; 2 % of the mean, against 6 % where small lights lack this light. Fails if: lights met by such
 // rays have the weight 1, or these rays alone bring the light.
-TEST(Bump, SmallLightsLeaveNoSpecks) {
+TEST(BumpMap, SmallLightsLeaveNoSpecks) {
   const ScratchFolder folder;
   const auto specular = [&](const std::string& light) {
     const Image image =

@@ -45,8 +45,8 @@ TEST(MayShadow, MissesNothing) {
       for (Vec3d& p : world.meshes[1].positions) p = Vec3d{1e6, 1e6, 1e6} + p * 1e-9;
       const RayScene rays(world);
       const PrecomputeInput input{bare, world, rays, with.plan, nullptr};
-      const auto without =
-          trace_transfers(input, 0, with.bodies[0].surface.samples, recentred_lights(bare, world));
+      const auto without = trace_transfers(input, 0, with.bodies[0].boundary, with.bodies[0].surface.samples,
+                                           recentred_lights(bare, world));
       const bool same = without[0].weights == with.bodies[0].transfers[0].weights;
       const bool may = may_shadow(mesh_keys(with.world), 1, with.plan.groups[0],
                                   recentred_lights(scene, with.world)[0], with.world.unit);

@@ -265,8 +265,7 @@ class ObjReader {
   void finish() {
     const std::size_t faces = mesh_.triangles.size() + mesh_.collapsed;
     if (part_ != nullptr && faces == 0)
-      throw bad_file(path_, "has no such part", "a material that usemtl gives to faces",
-                     opaline::quoted(*part_));
+      throw bad_file(path_, "has no such part", "a material that usemtl gives to faces", quoted(*part_));
     require_faces(path_, mesh_.positions.size(), faces);
     check_.throw_if_any(path_);
     check_range(highest_vertex_, mesh_.positions.size(), "vertex");

@@ -18,8 +18,8 @@ namespace opaline {
 namespace {
 
 constexpr std::uint64_t kVersion = 1;
-constexpr double kLeastTolerance = .02;      // a finer sum changes the error by less than 0.01 %
-constexpr double kBytesOfLightSample = 300;  // while the tree is built; bench_plan
+constexpr double kLeastTolerance = .02;  // a finer sum changes the error by less than 0.01 %
+constexpr double kBytesOfSample = 300;   // while the tree is built; bench_plan
 
 struct ImageSpaceState : MethodState {
   static constexpr Method kMethod = Method::image_space;
@@ -113,7 +113,7 @@ void ImageSpaceMethod::plan(const PlanningInput& input, BodyPlan& body,
 
 BodyMemory ImageSpaceMethod::memory(const PlanningInput& input, const BodyPlan& body) const {
   BodyMemory memory{.evaluated_samples = body.samples};
-  memory.kept = std::size_t(kBytesOfLightSample * double(body.samples * input.lights.size()));
+  memory.kept = std::size_t(kBytesOfSample * double(body.samples * input.lights.size()));
   const Bounds box = bounds(input.world, body.meshes);
   const Vec3d size = box.high - box.low;
   const double spacing = body.spacing / input.world.unit,
@@ -139,7 +139,7 @@ void ImageSpaceMethod::prepare(BodyStages& stages) const {
   const double spacing = body.plan.spacing / world.unit;
   const ResultSource source = stages.store.get(state.lit, lit_key(stages, spacing), [&] {
     // A face at 60 degrees to a light then has the planned spacing.
-    std::vector<FluxSample> points = seen_from_lights(stages.input, body.plan, spacing * std::sqrt(.5));
+    std::vector<FluxSample> points = seen_from_lights(stages.input, body, spacing * std::sqrt(.5));
     ImageSpaceState::Lit lit{.tree = build_octree(std::move(points)),
                              .kernel = make_split_kernel(body.profile, spacing, world.diagonal,
                                                          stages.input.scene.settings.laboratory.near_field,

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "bodies/surface_boundaries.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "irradiance/shadow_batch.h"
@@ -148,12 +147,12 @@ std::vector<Standpoint> standpoints(std::span<const Light> lights, const Vec3f& 
 /// Collects the points of one body in the views.
 class Views {
  public:
-  Views(const PrecomputeInput& input, const BodyPlan& body)
+  Views(const PrecomputeInput& input, const Body& body)
       : input_(input),
         textures_(input.scene, input.world),
-        boundary_(boundaries_of(input.scene, input.world)[body.meshes.front()]),
+        boundary_(body.boundary),
         is_own_(input.world.meshes.size()) {
-    for (const std::uint32_t mesh : body.meshes) is_own_[mesh] = true;
+    for (const std::uint32_t mesh : body.plan.meshes) is_own_[mesh] = true;
   }
 
   /// in    count: views of the light
@@ -261,11 +260,11 @@ LightView view_from(const Bounds& box, const Vec3d& position, double spacing) {
   return view;
 }
 
-std::vector<FluxSample> seen_from_lights(const PrecomputeInput& input, const BodyPlan& body, double spacing) {
+std::vector<FluxSample> seen_from_lights(const PrecomputeInput& input, const Body& body, double spacing) {
   std::vector<Light> lights;  // without trees of lights
   for (const Light& light : input.scene.lights)
     lights.push_back(light_in_world(input.scene, input.world, light));
-  const Bounds box = bounds(input.world, body.meshes);
+  const Bounds box = bounds(input.world, body.plan.meshes);
   const Vec3d centre = .5 * (box.low + box.high);
   const Views views(input, body);
   std::vector<FluxSample> all;

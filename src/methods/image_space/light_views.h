@@ -21,7 +21,7 @@ inline constexpr std::size_t kMostPixelsOfView = 1 << 20;
 /// One view for a light without an area; several from points on it or, for an environment, directions of it.
 /// in    input: scene, world and rays; spacing: of the points of one light, world units
 /// out   samples in the body's surface, unordered; empty where no light arrives
-std::vector<FluxSample> seen_from_lights(const PrecomputeInput& input, const BodyPlan& body, double spacing);
+std::vector<FluxSample> seen_from_lights(const PrecomputeInput& input, const Body& body, double spacing);
 
 /// Rays through the pixels of a view towards a box, and the solid angle of each, or the area across parallel
 /// ones.

@@ -4,10 +4,10 @@
 export const add = (a, b) => a.map((x, i) => x + b[i]);
 export const sub = (a, b) => a.map((x, i) => x - b[i]);
 export const scale = (a, s) => a.map((x) => x * s);
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const length = (a) => Math.sqrt(dot(a, a));
-const unit = (a) => scale(a, 1 / (length(a) || 1));
+export const unit = (a) => scale(a, 1 / (length(a) || 1));
 
 // Rounds to few digits, to keep commands short.
 export const rounded = (x) => Array.isArray(x) ? x.map(rounded) : Number(x.toPrecision(6));

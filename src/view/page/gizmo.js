@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Handles over the selected shape: they move it along the axes, turn it about them, or scale it along its own axes.
-import {add, basis, heightAt, project, scale, sub} from "./camera.js";
+import {add, basis, dot, heightAt, project, scale, sub, unit} from "./camera.js";
 import {newStroke, pausedStroke} from "./connection.js";
+import {svg} from "./overlay.js";
 import {movedBy, ownAxes, placementOf, scaledBy, stepsOf, turnedBy} from "./placement.js";
 
 const kReach = .16;              // length of the axes, as a fraction of the image height
@@ -13,13 +14,6 @@ const kRing = 48;
 const kAxes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], kNames = ["x", "y", "z", "all"];
 const kWords = {move: "along", turn: "about", scale: "along its"};
 
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const unit = (a) => scale(a, 1 / (Math.hypot(...a) || 1));
-const svg = (name, attributes) => {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  return element;
-};
 const pathOfPoints = (points) => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
 
 // A point on each side of a direction, for the head of an arrow.

@@ -34,7 +34,7 @@ function textOf(value) {
   return [unit ? `${value[unit]} ${unit}` : "", colour].filter(Boolean).join(", ");
 }
 
-const make = (name, properties = {}, ...children) => {
+export const make = (name, properties = {}, ...children) => {
   const element = Object.assign(document.createElement(name), properties);
   element.append(...children);
   return element;
@@ -72,7 +72,7 @@ export class Knobs {
   // The path of an element of a list, by its name where that can stand in a path.
   pathOf(list, index) {
     const name = this.scene[list][index].name;
-    return `${list}.${name && /^[\w-]+$/.test(name) ? name : index}`;
+    return `${list}.${name && /^(?!\d+$)[\w-]+$/.test(name) ? name : index}`;  // digits alone are an index
   }
 
   formOf(medium) {

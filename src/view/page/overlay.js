@@ -6,7 +6,7 @@ import {newStroke, pausedStroke} from "./connection.js";
 const kInset = .03;  // inset of the handle of a light outside, as a fraction of the image
 const kStep = .02;   // step of a key, as a fraction of the camera's distance
 
-const svg = (name, attributes) => {
+export const svg = (name, attributes) => {
   const element = document.createElementNS("http://www.w3.org/2000/svg", name);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
   return element;

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Strip of images kept by the page, each with its edits, its cost and its error: to go back to, and to compare.
+import {make} from "./knobs.js";
 import {draw} from "./picture.js";
+import {few, secondsText} from "./trade.js";
 
 const kMost = 12, kMostBytes = 2 ** 29;  // the oldest ones go
 const kHeight = 64;
-
-const make = (name, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(name), properties);
-  element.append(...children);
-  return element;
-};
 
 function thumbnailOf(picture, display) {
   const full = document.createElement("canvas"), height = kHeight, width = Math.max(1, Math.round(height * picture.width / picture.height));
@@ -18,9 +14,6 @@ function thumbnailOf(picture, display) {
   thumbnail.getContext("2d").drawImage(full, 0, 0, width, height);
   return thumbnail;
 }
-
-const few = (x) => Number(x.toPrecision(2));
-const secondsText = (s) => s < 1 ? `${few(1000 * s)} ms` : `${few(s)} s`;
 
 export class Snapshots {
   // root: the strip; recall(snapshot): shows its scene again; compare({left, right}): pictures beside the wipe

@@ -10,8 +10,8 @@ const svg = (name, attributes, text = "") => {
   return element;
 };
 
-const few = (x) => Number(x.toPrecision(2)).toString();
-const secondsText = (s) => s < .1 ? `${few(1000 * s)} ms` : `${few(s)} s`;
+export const few = (x) => Number(x.toPrecision(2)).toString();
+export const secondsText = (s) => s < .1 ? `${few(1000 * s)} ms` : `${few(s)} s`;
 const errorText = (e) => `${few(100 * e)} %`;
 
 // 1, 2 and 5 times powers of ten within a range; the powers alone where those are many.

@@ -97,7 +97,7 @@ class StageReader:
         self.scene.camera_path = path
 
 
-def write_beside(path, data):
+def write_file(path, data):
     """Writes a file completely or not at all."""
     scratch = f"{path}.{os.getpid()}.tmp"
     try:
@@ -120,11 +120,11 @@ def convert_file(source, target, time, camera):
     stage = open_stage(source, losses)
     scene = StageReader(stage, source, time_of(stage, time), losses).run(camera)
     if ending == ".glb":
-        write_beside(target, glb.scene_file(scene, losses))
+        write_file(target, glb.scene_file(scene, losses))
         return losses.lines()
     file = SceneFile(scene, target, losses)
     text = file.text()
     for name, data in file.files.items():
-        write_beside(os.path.join(file.folder, name), data)
-    write_beside(target, text.encode())
+        write_file(os.path.join(file.folder, name), data)
+    write_file(target, text.encode())
     return losses.lines()

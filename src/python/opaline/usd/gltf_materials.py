@@ -8,7 +8,6 @@ import tempfile
 
 import numpy as np
 
-from .records import Picture
 
 BY_JSON = ", except in a .json scene"
 FORMATS = {b"\x89PNG": "image/png", b"\xff\xd8\xff": "image/jpeg"}
@@ -153,6 +152,9 @@ class GltfMaterials:
         from .. import Error, image
         channels = []
         for texture, target in given:
+            if texture.get("channel") == "a":
+                self.lose("roughness and metalness in alpha, not packed in green and blue")
+                return None
             if texture["texture"].is_tiled:
                 self.lose("roughness and metalness of several tiles, not packed in green and blue")
                 return None
