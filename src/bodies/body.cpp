@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bodies/surface_textures.h"
 #include "core/random.h"
 #include "lights/light.h"
 #include "lights/light_tree.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bodies/surface_textures.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "irradiance/shadow_batch.h"
