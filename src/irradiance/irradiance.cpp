@@ -257,4 +257,11 @@ std::vector<RgbF> irradiance_at(const PointIrradianceInput& input) {
   return combine_lights(transfers_at(input), input);
 }
 
+std::vector<float> bend_all(const PointIrradianceInput& input, std::span<SurfacePoint> points) {
+  std::vector<float> factors;
+  if (!input.bend) return factors;
+  for (SurfacePoint& point : points) factors.push_back(input.bend(point));
+  return factors;
+}
+
 }  // namespace opaline

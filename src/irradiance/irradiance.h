@@ -73,7 +73,13 @@ struct PointIrradianceInput {
   bool is_together = false;
   /// Unless empty: one per point, the irradiance by the same rays without any shadow is added to it.
   std::span<RgbF> unshadowed = {};
+  /// As IrradianceInput::bend, for further points on the surface of the body; the normals of `points` are final.
+  std::function<float(SurfacePoint&)> bend = {};
 };
+
+/// Turns the normals of further points by input.bend; returns the factors of their light, none without maps.
+/// in    points: with their widths
+std::vector<float> bend_all(const PointIrradianceInput& input, std::span<SurfacePoint> points);
 
 /// Irradiance at points from one light, per unit emission.
 struct PointTransfers {

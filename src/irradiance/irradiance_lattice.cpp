@@ -166,14 +166,19 @@ void IrradianceLattice::light(Cell& cell, const PointIrradianceInput& lighting) 
   if (cell.points.empty()) return;
   std::vector<std::uint64_t> keys(cell.points.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = hash_bits(cell.seed, i);
+  std::vector<SurfacePoint> bent;
+  if (lighting.bend) bent = cell.points;
+  for (std::size_t i = 0; i < bent.size(); ++i) bent[i].width = std::sqrt(cell.areas[i]);
+  const std::vector<float> factors = bend_all(lighting, bent);
   PointIrradianceInput here = lighting;
-  here.points = cell.points;
+  here.points = lighting.bend ? bent : cell.points;
   here.keys = keys;
   here.boundary = lighting.boundary;  // with the textures of the present world
   here.light_samples = light_samples_;
   here.variance = {};
   if (holds_lights_) add_transfers(here, cell.lights);
   cell.entered = holds_lights_ ? combine_lights(cell.lights, here) : irradiance_at(here);
+  for (std::size_t i = 0; i < factors.size(); ++i) cell.entered[i] = cell.entered[i] * factors[i];
 }
 
 IrradianceLattice::Cell IrradianceLattice::make_cell(const Key& key,

@@ -136,6 +136,30 @@ TEST(BumpMap, OfNoHeightIsNone) {
   EXPECT_LT(angles(bumped_picture(folder, kQuad + bump(R"(, "scale": 0.001)")), flat).second, 1);
 }
 
+// Claim: a map without relief changes nothing, beside shadow edges and under lights with an area too. Source: by hand. Tolerance: 1e-5,
+// rounding of the factor. Fails if: the near field of bodies with maps has no light of its own, by lattice or by drawn points.
+TEST(BumpMap, FlatOnesChangeNothing) {
+  const ScratchFolder folder;
+  put_exr(folder.file("flat.exr"), 4, 4, [](int, int) { return std::array{.5, .5, .5}; });
+  for (const std::string size : {"48", "6"}) {
+    const auto picture = [&](const std::string& map) {
+      return picture_of(folder,
+                        R"({"media": {"m": {"sigma_a": 0.01, "sigma_s_prime": 10, "specular_ior": 1.3}},
+          "shapes": [{"box": {"low": [-10, -10, -6], "high": [10, 10, 0]}, "medium": "m")" +
+                            map +
+                            R"(}, {"box": {"low": [-1, -20, 3], "high": [1, 20, 4]}}],
+          "lights": [{"type": "sphere", "center": [5, 0, 20], "radius": 1, "radiance": 100}],
+          "camera": {"position": [0, 0, 100], "field_of_view": 9}, "film": {"pixel_type": "float", "resolution": [)" +
+                            size + "," + size + R"(]},
+          "settings": {"bounces": 0, "samples": 800, "method": "hierarchical", "evaluator": "dual_tree"}})");
+    };
+    const Image plain = picture(""), flat = picture(R"(, "bump_map": {"texture": "flat.exr"})");
+    for (std::size_t i = 0; i < plain.pixels.size(); ++i)
+      ASSERT_NEAR(flat.pixels[i], plain.pixels[i], 1e-5f * std::abs(plain.pixels[i]) + 1e-9f)
+          << size << ' ' << i;
+  }
+}
+
 // Claim: light enters a body by the normals of its maps: tilted by 20 degrees towards or away from a lamp at 60 degrees, the body is brighter or
 // darker as the cosine and Fresnel's transmittance, and the factor of tilted parts, whatever the method. Source: by hand. Tolerance: 5 %:
 // hits have no such factor (3 %), and volume methods are noisy. Fails if: a method's samples, entries or walks ignore maps (53 and 65 %).

@@ -75,6 +75,7 @@ SampleField::SampleField(const RenderInput& input, const Body& group)
       creases_(crease_deviation(input, group)) {
   if (asks_irradiance_ || (state_.cache() != nullptr && leaves_some_to_points(*state_.cache())))
     near_field_.emplace(group, light_samples_of_ray(input.scene), held_lattice(input, group));
+  if (near_field_ && has_maps(input.scene, group.plan.meshes)) maps_.emplace(input.scene, input.world);
 }
 
 LeavingLight SampleField::at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
@@ -123,9 +124,11 @@ LeavingLight SampleField::at_points(const SurfaceHits& hits, PointIrradianceInpu
       state_.cache() != nullptr && asks_irradiance_
           ? looked_up(hits, light.irradiance)
           : summed(hits, light.irradiance, held != nullptr ? &held->packets : nullptr);
-  // Beside edges of a tint or bump, the samples' irradiance differs from the point's own without a shadow edge.
-  if (looks_near && group_.entering.empty() && !has_maps(input_.scene, group_.plan.meshes))
+  // Beside edges of a tint, the samples' irradiance differs from the point's own without a shadow edge.
+  if (looks_near && group_.entering.empty()) {
+    if (maps_) lighting.bend = [this](SurfacePoint& point) { return maps_->bend(point); };
     refine_near_field(lighting, exitance, light);
+  }
   put_exitance(exitance, light);
   return light;
 }

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "bodies/surface_textures.h"
 #include "methods/hierarchical/hierarchical_state.h"
 #include "methods/hierarchical/near_field/near_field_sampler.h"
 #include "subsurface/field.h"
@@ -38,6 +39,7 @@ class SampleField : public Field {
   const Body& group_;
   const HierarchicalState& state_;
   bool is_noisy_, asks_irradiance_;
+  std::optional<SurfaceTextures> maps_;         ///< none: the body has no maps of normals and heights
   std::optional<NearFieldSampler> near_field_;  ///< none: samples or cache suffice
   RgbF creases_{};  ///< error of the near field at creases, over the exitance, as a standard deviation
 };

@@ -157,12 +157,17 @@ void NearFieldSampler::draw_all(const Found& found, std::span<const std::uint32_
     places.sets.resize(places.rays.size(), std::uint32_t(set));
   }
   find(lighting.rays, places);
+  std::vector<SurfacePoint> bent;
+  if (lighting.bend) bent = places.points;
+  for (SurfacePoint& point : bent) point.width = float(near_.narrowest);
+  const std::vector<float> factors = bend_all(lighting, bent);
   PointIrradianceInput around = lighting;
-  around.points = places.points;
+  around.points = lighting.bend ? bent : places.points;
   around.keys = places.keys;
   around.light_samples = std::max(1, lighting.light_samples / kFewerRays);
   around.variance = {};
-  const std::vector<RgbF> entered = irradiance_at(around);
+  std::vector<RgbF> entered = irradiance_at(around);
+  for (std::size_t i = 0; i < factors.size(); ++i) entered[i] = entered[i] * factors[i];
   for (std::size_t set = 0, first = 0; set < ends.size(); first = ends[set++]) {
     const auto [begin, end] = std::equal_range(places.sets.begin(), places.sets.end(), std::uint32_t(set));
     const std::size_t skip = std::size_t(begin - places.sets.begin()), count = std::size_t(end - begin);
