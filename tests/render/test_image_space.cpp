@@ -24,11 +24,11 @@ Scene lit_ball(std::vector<Light> lights) {
 // Transmitted by the body of a scene, W, in red.
 double flux_of(const Scene& scene) {
   const Prepared prepared(scene);
-  const BodyPlan& body = prepared.plan.groups[0];
+  const Body& body = prepared.bodies[0];
   double flux = 0;
   for (const FluxSample& sample :
        seen_from_lights({prepared.scene, prepared.world, prepared.rays, prepared.plan}, body,
-                        body.spacing / prepared.world.unit))
+                        body.plan.spacing / prepared.world.unit))
     flux += double(sample.area) * double(sample.irradiance.x);
   return flux * prepared.world.unit * prepared.world.unit;
 }
