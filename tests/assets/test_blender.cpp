@@ -122,7 +122,7 @@ TEST_P(LongBlender, SameLights) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Long, LongBlender,
+INSTANTIATE_TEST_SUITE_P(By, LongBlender,
                          ::testing::Values(std::array<int, 2>{160, 120}, std::array<int, 2>{90, 130}));
 
 }  // namespace
