@@ -108,7 +108,7 @@ class ObjReader {
 
   void leave_out(std::string_view keyword, const TextCursor& at) {
     if (unread_++ > 0) return;
-    first_unread_ = quoted(keyword);
+    first_unread_ = quoted_word(keyword);
     first_unread_line_ = line(at);
   }
 
@@ -127,7 +127,7 @@ class ObjReader {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::string_view word = at.word();
       if (!parse_number(word, value[i]))
-        throw bad_line(path_, line(at), std::string("bad ") + what, "three numbers", quoted(word));
+        throw bad_line(path_, line(at), std::string("bad ") + what, "three numbers", quoted_word(word));
     }
     return value;
   }
@@ -161,7 +161,7 @@ class ObjReader {
       double value = 0;
       if (word.empty() && i == 1) return;  // a texture of one dimension
       if (!parse_number(word, value))
-        throw bad_line(path_, line(at), "bad texture coordinate", "one to three numbers", quoted(word));
+        throw bad_line(path_, line(at), "bad texture coordinate", "one to three numbers", quoted_word(word));
       uv[i] = float(value);
     }
   }
@@ -171,7 +171,7 @@ class ObjReader {
     std::int64_t value = 0;
     if (!parse_integer(text, value) || value == 0 || value < -std::int64_t(count))
       throw bad_line(path_, line(at), std::string("bad ") + what + " index in a face",
-                     "1 to their number, or -1 to -" + std::to_string(count), quoted(text));
+                     "1 to their number, or -1 to -" + std::to_string(count), quoted_word(text));
     return value > 0 ? value - 1 : std::int64_t(count) + value;
   }
 
@@ -265,7 +265,7 @@ class ObjReader {
   void finish() {
     const std::size_t faces = mesh_.triangles.size() + mesh_.collapsed;
     if (part_ != nullptr && faces == 0)
-      throw bad_file(path_, "has no such part", "a material that usemtl gives to faces", quoted(*part_));
+      throw bad_file(path_, "has no such part", "a material that usemtl gives to faces", quoted_word(*part_));
     require_faces(path_, mesh_.positions.size(), faces);
     check_.throw_if_any(path_);
     check_range(highest_vertex_, mesh_.positions.size(), "vertex");

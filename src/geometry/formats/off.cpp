@@ -52,7 +52,7 @@ class OffReader {
     if (rest.starts_with("N")) has_normals_ = true, rest.remove_prefix(1);
     if (rest != "OFF")
       throw bad_line(path_, at_.line(), "this is not an OFF file of three dimensions",
-                     "OFF, COFF, NOFF or STOFF", quoted(word));
+                     "OFF, COFF, NOFF or STOFF", quoted_word(word));
   }
 
   std::int64_t integer(const char* what) {
@@ -60,7 +60,7 @@ class OffReader {
     std::int64_t value = 0;
     if (!parse_integer(word, value) || value < 0)
       throw bad_line(path_, at_.line(), std::string("bad ") + what, "an integer >= 0",
-                     word.empty() ? "end of file" : quoted(word));
+                     word.empty() ? "end of file" : quoted_word(word));
     return value;
   }
 
@@ -92,7 +92,7 @@ class OffReader {
       const std::string_view word = across_lines && i == 0 ? at_.word_across_lines() : at_.word();
       if (!parse_number(word, value[i]))
         throw bad_line(path_, at_.line(), std::string("bad ") + what, "three numbers",
-                       at_.at_end() && word.empty() ? "end of file" : quoted(word));
+                       at_.at_end() && word.empty() ? "end of file" : quoted_word(word));
     }
     return value;
   }

@@ -71,7 +71,7 @@ class PlyValues {
     if (!good)
       throw bad_line(path_, text_.line(), "bad value in a PLY file",
                      is_floating(type) ? "a number" : "an integer",
-                     word.empty() ? "end of file" : quoted(word));
+                     word.empty() ? "end of file" : quoted_word(word));
     return is_floating(type) ? number : double(integer);
   }
 
@@ -204,7 +204,7 @@ class PlyReader {
     }
     give_colors();
     if (!has_uvs_ && !header_.texture.empty())
-      mesh_.warnings.push_back(path_ + ": the texture " + quoted(header_.texture) +
+      mesh_.warnings.push_back(path_ + ": the texture " + quoted_word(header_.texture) +
                                " (TextureFile) is ignored; the scene file defines the material of a shape");
     if (textures_ > 1)
       mesh_.warnings.push_back(path_ + ": its faces have " + std::to_string(textures_) +

@@ -31,7 +31,7 @@ class HeaderReader {
   PlyHeader run() {
     const std::string_view magic = at_.word();
     if (magic != "ply" && magic != "PLY")
-      throw bad_line(path_, 1, "this is not a PLY file", "ply", quoted(magic));
+      throw bad_line(path_, 1, "this is not a PLY file", "ply", quoted_word(magic));
     do {
       at_.next_line();
       if (at_.at_end())
@@ -58,7 +58,7 @@ class HeaderReader {
       if (at_.word() == "TextureFile" && header_.texture.empty()) header_.texture = at_.rest_of_line();
     } else if (!keyword.empty() && keyword != "obj_info") {
       throw bad_line(path_, at_.line(), "unknown statement in a PLY header",
-                     "format, element, property, comment or end_header", quoted(keyword));
+                     "format, element, property, comment or end_header", quoted_word(keyword));
     }
     return true;
   }
@@ -67,7 +67,7 @@ class HeaderReader {
     const std::string_view word = at_.word();
     if (word != "ascii" && word != "binary_little_endian" && word != "binary_big_endian")
       throw bad_line(path_, at_.line(), "unknown PLY format",
-                     "ascii, binary_little_endian or binary_big_endian", quoted(word));
+                     "ascii, binary_little_endian or binary_big_endian", quoted_word(word));
     header_.encoding = word == "ascii"                  ? PlyEncoding::ascii
                        : word == "binary_little_endian" ? PlyEncoding::little_endian
                                                         : PlyEncoding::big_endian;
@@ -81,7 +81,7 @@ class HeaderReader {
     std::int64_t count = 0;
     if (element.name.empty() || !parse_integer(word, count) || count < 0)
       throw bad_line(path_, at_.line(), "bad element in a PLY header", "a name and a count >= 0",
-                     quoted(word));
+                     quoted_word(word));
     element.count = std::uint64_t(count);
     header_.elements.push_back(element);
   }
@@ -90,7 +90,7 @@ class HeaderReader {
     for (std::size_t i = 0; i < types.size(); ++i)
       if (word == types[i].short_name || word == types[i].long_name) return PlyScalar(i);
     throw bad_line(path_, at_.line(), "unknown type in a PLY header",
-                   "char, uchar, short, ushort, int, uint, float or double", quoted(word));
+                   "char, uchar, short, ushort, int, uint, float or double", quoted_word(word));
   }
 
   void property() {

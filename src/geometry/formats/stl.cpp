@@ -111,7 +111,7 @@ class TextStlReader {
     if (keyword == "endsolid") ended_ = true;
     if (std::ranges::find(line_keywords, keyword) == line_keywords.end())
       throw bad_line(path_, at_.line(), "unknown statement in an STL file",
-                     "facet, outer loop, vertex, endloop, endfacet or endsolid", quoted(word));
+                     "facet, outer loop, vertex, endloop, endfacet or endsolid", quoted_word(word));
   }
 
   void loop() {
@@ -123,7 +123,7 @@ class TextStlReader {
       for (std::size_t i = 0; i < 3 && good; ++i) good = parse_number(at_.word(), position[i]);
       if (!good)
         throw bad_line(path_, at_.line(), "bad corner of a triangle", "vertex and three numbers",
-                       at_.at_end() && keyword.empty() ? "end of file" : quoted(keyword));
+                       at_.at_end() && keyword.empty() ? "end of file" : quoted_word(keyword));
       check_.check(position, corners_.size(), at_.line());
       corners_.push_back(Vec3f(position));
     }

@@ -95,7 +95,7 @@ inline bool parse_integer(std::string_view word, std::int64_t& value) {
 }
 
 /// The word in quotes for a message, shortened, without unprintable bytes; "end of line" if there is none.
-inline std::string quoted(std::string_view word) {
+inline std::string quoted_word(std::string_view word) {
   if (word.empty()) return "end of line";
   std::string text = "'";
   for (char c : word.substr(0, 40)) text += c >= ' ' && c <= '~' ? c : '?';
