@@ -395,9 +395,10 @@ std::vector<RgbF> smoothed(const SurfaceSamples& surface, std::vector<RgbF> valu
 }  // namespace
 
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
-                                                  HeldView* view) {
+                                                  MirroredByBodies mirrored, HeldView* view) {
   const RenderInput lit{input.scene, input.world, input.rays, bodies, input.monitor, view};
-  const Shader shader(lit);
+  Shader shader(lit);
+  shader.set_mirrored_by_bodies(mirrored);
   std::vector<std::vector<RgbF>> bounced;
   if (input.monitor != nullptr) {
     std::size_t points = 0;

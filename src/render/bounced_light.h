@@ -91,9 +91,10 @@ class BouncedPlaces {
 
 /// Irradiance at each body's samples from surfaces: translucent ones from their trees or cells, opaque ones
 /// after all bounces between them; one list per body.
-/// in    view: cache with HeldView::at_samples for the same samples, extended; or null
+/// in    mirrored: light mirrored by the boundaries of bodies; view: cache with HeldView::at_samples for the same
+///       samples, extended; or null
 std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, std::span<const Body> bodies,
-                                                  HeldView* view = nullptr);
+                                                  MirroredByBodies mirrored, HeldView* view = nullptr);
 
 /// Indirect light at the hits of an image: from RenderInput::bounced, or from a cache of its own. Hits
 /// without a usable cache point, as at silhouettes, gather rays themselves, with a second bounce if the

@@ -18,10 +18,16 @@ namespace opaline {
 
 class BouncedLight;
 
+/// Specular reflection of bodies in gathered light: as of a uniform illumination, or none.
+enum class MirroredByBodies { as_uniform, left_out };
+
 class Shader {
  public:
   /// sources: of meshes without a body. All arguments must outlive the object.
   explicit Shader(const RenderInput& input, std::span<const FieldSource> sources = {});
+
+  /// For radiance_along.
+  void set_mirrored_by_bodies(MirroredByBodies mirrored) { mirrored_by_bodies_ = mirrored; }
 
   /// Specular reflection at the hits: by rays, as of a uniform illumination, or none.
   enum class Specular { traced, uniform, none };
@@ -145,6 +151,7 @@ class Shader {
   }
 
   const RenderInput& input_;
+  MirroredByBodies mirrored_by_bodies_ = MirroredByBodies::as_uniform;
   std::vector<Light> lights_;                        // recentred
   std::vector<RgbF> emitted_;                        // one per light
   MetLights met_, seen_;                             // by any ray, by those of the camera

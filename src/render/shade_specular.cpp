@@ -175,7 +175,8 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
       if (min_component(appearance.albedo) < kDark)
         arriving = component_min(arriving, unshadowed_irradiance(lights_, hits.points[i]) * kInversePi);
     }
-    if (appearance.mirrors())
+    const bool is_elsewhere = appearance.translucent && mirrored_by_bodies_ == MirroredByBodies::left_out;
+    if (appearance.mirrors() && !is_elsewhere)
       sample.specular += arriving * appearance.mirrored_share(cosine) * (past_fuzz * past_fuzz);
     if (batch.specular == Specular::uniform) sample.specular += arriving * appearance.fuzz_share(cosine);
   }

@@ -6,6 +6,7 @@
 
 #include "input/settings_table.h"
 #include "render/bounced_light.h"
+#include "render/mirrored_light.h"
 #include "session/session_state.h"
 #include "stages/stage_codecs.h"
 
@@ -77,7 +78,7 @@ class DirectlyLitBodies {
 // Bounced light depends on all bodies.
 void Session::State::update_bounces(std::span<BodyStages> bodies) {
   const PrecomputeInput& input = bodies.front().input;
-  KeyBuilder all("bounces", 9);
+  KeyBuilder all("bounces", 10);
   all.add(surfaces_key(input, mesh_keys_, bodies.front().lights));
   for (const Body& body : bodies_) all.add(method_of(body.plan.method).direct_key(body));
   std::vector<StageKey> wanted;
@@ -109,10 +110,18 @@ std::vector<std::vector<RgbF>> Session::State::gathered_bounces(std::span<BodySt
   own.keeps_further_bounces = false;
   HeldView* const held = held_view_of_samples(input);
   HeldView* const view = held != nullptr ? held : &own;
-  std::vector<std::vector<RgbF>> all = bounced_at_samples(input, bodies_, view);
   if (!std::ranges::all_of(bodies_,
                            [](const Body& body) { return method_of(body.plan.method).supports_reentry(); }))
-    return all;
+    return bounced_at_samples(input, bodies_, MirroredByBodies::as_uniform, view);
+  const std::vector<std::vector<RgbF>> mirrored = mirrored_at_samples(input, bodies_);
+  const auto gathered = [&] {
+    std::vector<std::vector<RgbF>> light =
+        bounced_at_samples(input, bodies_, MirroredByBodies::left_out, view);
+    for (std::size_t b = 0; b < mirrored.size(); ++b)
+      for (std::size_t i = 0; i < mirrored[b].size(); ++i) light[b][i] += mirrored[b][i];
+    return light;
+  };
+  std::vector<std::vector<RgbF>> all = gathered();
   BounceSeries series;
   series.add(bodies_, {}, all);
   for (int bounce = 2; bounce <= kMostBounces && !series.has_converged(); ++bounce) {
@@ -121,8 +130,7 @@ std::vector<std::vector<RgbF>> Session::State::gathered_bounces(std::span<BodySt
       tint_bounced(bodies_[b], tinted);
       method_of(bodies_[b].plan.method).add_for_gathering(bodies[b], tinted);
     }
-    const std::vector<std::vector<RgbF>> before =
-        std::exchange(all, bounced_at_samples(input, bodies_, view));
+    const std::vector<std::vector<RgbF>> before = std::exchange(all, gathered());
     series.add(bodies_, before, all);
     if (!series.has_converged() && bounce < kMostBounces) continue;
     const auto rest = float(series.rest());
