@@ -3,7 +3,7 @@
 //
 //   bench_volume_models SCENE TRUTH [KEY=VALUE ...]
 //   bench_volume_models FOLDER
-//   bench_volume_models FOLDER --default [MESH ...]
+//   bench_volume_models FOLDER --default [MESH OR PART OF SHAPE AND MEDIUM ...]
 //   bench_volume_models FOLDER --model NAME [KEY=VALUE ...] [PART OF SHAPE AND MEDIUM ...]
 //
 // The second prints one table of models by shape by medium (model_table.h), with scenes and truths in FOLDER; the third
@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
   if (argc < 3)
     return fmt::print(
                "usage: bench_volume_models SCENE TRUTH [KEY=VALUE ...], or bench_volume_models FOLDER\n"
-               "       [--default [MESH ...]], or bench_volume_models FOLDER\n"
+               "       [--default [MESH OR PART OF SHAPE AND MEDIUM ...]], or bench_volume_models FOLDER\n"
                "       [--model NAME [KEY=VALUE ...] [PART OF SHAPE AND MEDIUM ...]]\n"),
            2;
   const std::vector<std::string> overrides(argv + 3, argv + argc);

@@ -107,6 +107,18 @@ std::vector<Pair> all_pairs(const std::string& folder, const std::vector<NamedTe
   return pairs;
 }
 
+std::string title_of(const Pair& pair) {
+  return fmt::format("{} {}", pair.shape.name, pair.medium.name);
+}
+
+/// parts: of titles; empty: all
+bool is_asked(const Pair& pair, std::span<const std::string> parts) {
+  const std::string title = title_of(pair);
+  return parts.empty() || std::ranges::any_of(parts, [&](const std::string& part) {
+           return title.find(part) != std::string::npos;
+         });
+}
+
 Scene scene_of(const Pair& pair, const std::vector<std::string>& overrides) {
   const std::string file = pair.stem + ".json";
   std::ofstream(file) << scene_text(pair.shape, pair.medium);
@@ -279,17 +291,22 @@ void print_model_table(const std::string& folder) {
   fmt::print("\n");
 }
 
-void print_default_table(const std::string& folder, std::span<const std::string> meshes) {
+void print_default_table(const std::string& folder, std::span<const std::string> meshes_and_parts) {
   std::vector<NamedText> shapes = table_shapes();
   shapes.insert(shapes.begin() + 1, lying_plate(.5));
-  for (const std::filesystem::path path : meshes)
-    shapes.push_back(mesh_file(path.stem(), std::filesystem::absolute(path)));
+  std::vector<std::string> parts;
+  for (const std::filesystem::path path : meshes_and_parts)
+    if (std::filesystem::exists(path))
+      shapes.push_back(mesh_file(path.stem(), std::filesystem::absolute(path)));
+    else
+      parts.push_back(path);
   fmt::print(
       "rms / bias / p99 of the worst channel in % of the mean exitance, over {} cells, with re-entry\n\n"
       "| shape | medium | error | expected | method | user CPU over lambert |\n"
       "|---|---|---|---|---|---|\n",
       kCells);
   for (const Pair& pair : all_pairs(folder, shapes)) {
+    if (!is_asked(pair, parts)) continue;
     const WalkedCells cells = walked_cells(pair, /*reenters=*/true);
     Scene scene = scene_of(pair, {});
     scene.settings.method = Method::lambert;
@@ -318,9 +335,7 @@ void print_model_channels(const std::string& folder, const std::string& name,
     throw bad_file(folder, "no model of the table", "volume_diffusion or a profile", name);
   fmt::print("rms / bias / p99 in %: R, G, B; user CPU of the exitance, s\n");
   for (const Pair& pair : all_pairs(folder, table_shapes())) {
-    const std::string title = fmt::format("{} {}", pair.shape.name, pair.medium.name);
-    const auto is_in_title = [&](const std::string& part) { return title.find(part) != std::string::npos; };
-    if (!parts.empty() && std::ranges::none_of(parts, is_in_title)) continue;
+    if (!is_asked(pair, parts)) continue;
     const WalkedCells cells = walked_cells(pair, /*reenters=*/false);
     const Scene scene = scene_of(pair, overrides);
     const Scene modelled = with_model(scene, *model, chosen_profile(scene));
@@ -329,7 +344,7 @@ void print_model_channels(const std::string& folder, const std::string& name,
       session.edit(modelled);
       session.prepare();
     });
-    fmt::print("{:<30}", title);
+    fmt::print("{:<30}", title_of(pair));
     for (const ModelError& error : measured_errors(session, cells))
       fmt::print(" {:6.2f} /{:+6.2f} /{:5.1f}  ", 100 * error.rms, 100 * error.bias, 100 * error.p99);
     fmt::print("{:6.2f}\n", seconds);
