@@ -106,19 +106,23 @@ std::vector<RgbF> spread(const SurfaceSamples& surface, std::span<const RgbF> po
   const std::vector<SurfaceSample>& samples = surface.samples;
   const auto reach = float(kReach * surface.spacing());
   const NearestSample grid(samples, nullptr, kReach);
+  const auto for_around = [&](std::size_t i, const auto& use) {
+    grid.for_near(samples[i].position, reach, [&](const NearestSample::Member& member) {
+      const Vec3f apart = member.position - samples[i].position;
+      const float near = 1 - dot(apart, apart) / (reach * reach);
+      if (near > 0 && dot(member.normal, samples[i].normal) > 0) use(member.sample, near);
+    });
+  };
   std::vector<RgbF> irradiance(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (power[i] != RgbF{})
+      for_around(i, [&](std::uint32_t j, float near) { irradiance[j] += power[i] * near; });
   parallel_chunks(samples.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t i = begin; i < end; ++i) {
-      RgbF sum;
+      if (irradiance[i] == RgbF{}) continue;
       float area = 0;
-      grid.for_near(samples[i].position, reach, [&](const NearestSample::Member& member) {
-        const Vec3f apart = member.position - samples[i].position;
-        const float near = 1 - dot(apart, apart) / (reach * reach);
-        if (!(near > 0 && dot(member.normal, samples[i].normal) > 0)) return;
-        sum += power[member.sample] * near;
-        area += samples[member.sample].area * near;
-      });
-      if (area > 0) irradiance[i] = sum * (1 / area);
+      for_around(i, [&](std::uint32_t j, float near) { area += samples[j].area * near; });
+      irradiance[i] *= 1 / area;
     }
   });
   return irradiance;
