@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 4900;
 constexpr std::size_t kSamplesAtOnce = 1024;
-constexpr float kReach = 3;  // of the mean around a sample, spacings
+constexpr float kReach = 3;  // radius of the mean around a sample, spacings
 
 /// Light arriving at a sample.
 struct Arrival {
