@@ -441,10 +441,6 @@ std::vector<std::vector<RgbF>> bounced_at_samples(const PrecomputeInput& input, 
     const auto replace = [](std::size_t, const RgbF& around) { return around; };
     if (std::ranges::all_of(own, is_dark)) continue;
     for (std::size_t i = 0; i < own.size(); ++i) variance[i] -= own[i] * own[i] * (1 / float(rays_each));
-    // Gathered light that the boundary mirrors meets surfaces as often as the rays did; it enters again beside the sample.
-    if (mirrored == MirroredByBodies::left_out)
-      for (std::size_t i = 0; i < own.size(); ++i)
-        own[i] *= 1 / (1 - float(body.profile.average_reflectance) * met[i]);
     if (!std::ranges::all_of(further, is_dark)) {
       const std::vector<RgbF> smooth = smoothed(body.surface, further, replace);
       for (std::size_t i = 0; i < own.size(); ++i) own[i] += smooth[i] - further[i];
