@@ -300,12 +300,16 @@ void print_default_table(const std::string& folder, std::span<const std::string>
       shapes.push_back(mesh_file(path.stem(), std::filesystem::absolute(path)));
     else
       parts.push_back(path);
+  const std::vector<Pair> pairs = all_pairs(folder, shapes);
+  for (const std::string& part : parts)
+    if (std::ranges::none_of(pairs, [&](const Pair& pair) { return is_asked(pair, {&part, 1}); }))
+      throw bad_file(part, "is neither a file nor part of a row", "a mesh, or as \"bunny, 50 mm milk\"", "");
   fmt::print(
       "rms / bias / p99 of the worst channel in % of the mean exitance, over {} cells, with re-entry\n\n"
       "| shape | medium | error | expected | method | user CPU over lambert |\n"
       "|---|---|---|---|---|---|\n",
       kCells);
-  for (const Pair& pair : all_pairs(folder, shapes)) {
+  for (const Pair& pair : pairs) {
     if (!is_asked(pair, parts)) continue;
     const WalkedCells cells = walked_cells(pair, /*reenters=*/true);
     Scene scene = scene_of(pair, {});

@@ -19,9 +19,9 @@ std::vector<RgbF> exitance_at(const Session& session, std::span<const SurfaceSam
 void print_model_table(const std::string& folder);
 
 /// Prints quality and cost of the default image in Markdown: `auto` with re-entry, against random walks with re-entry.
-/// in    meshes_and_parts: paths of more shapes, scaled to 50 mm, their holes filled; others are parts of "shape medium",
-///       of which those that are printed have one
-/// error as print_model_table; as load_scene and make_mesh for the meshes
+/// in    meshes_and_parts: paths of more shapes, scaled to 50 mm, their holes filled, and parts of "shape medium": rows
+///       without one of these are left out
+/// error Error{bad_input}: neither a file nor part of a row; else as print_model_table; as load_scene and make_mesh for the meshes
 void print_default_table(const std::string& folder, std::span<const std::string> meshes_and_parts);
 
 /// Prints the errors of one model channel by channel, from the same scenes and truths.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light of lights that the boundaries of bodies mirror onto bodies.
+// Light mirrored by the boundaries of bodies onto bodies.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace opaline {
 
-/// Transmitted irradiance at each body's samples, W/mm^2, by light mirrored once by a body's boundary, as by a smooth
-/// one; one list per body, empty if none arrives. Each sample mirrors the light of its area along one ray per light;
-/// the result is a mean over a few spacings around a sample.
+/// Transmitted irradiance at each body's samples, W/mm^2, from lights mirrored once by the boundary of a body, taken as
+/// smooth; one list per body, empty if no light arrives. Each sample mirrors the light on its area along one ray per
+/// light. The result is averaged over a few spacings around each sample.
 std::vector<std::vector<RgbF>> mirrored_at_samples(const PrecomputeInput& input,
                                                    std::span<const Body> bodies);
 

@@ -155,7 +155,9 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
     const bool is_plain = hits.textures.empty();
     const Appearance textured = is_plain ? Appearance{} : appearance_of(hits, i);
     const Appearance& appearance = is_plain ? appearances_[hits.hits[i].mesh] : textured;
-    if (!appearance.mirrors() && !appearance.boundary.has_fuzz()) continue;
+    const bool is_elsewhere = appearance.translucent && mirrored_by_bodies_ == MirroredByBodies::left_out,
+               mirrors = appearance.mirrors() && !is_elsewhere;
+    if (!mirrors && !appearance.boundary.has_fuzz()) continue;
     const float cosine = cos_view(hits.points[i], batch.rays[hits.rays[i]].ray.direction);
     PixelSample& sample = batch.out[hits.rays[i]];
     RgbF arriving = sample.irradiance *
@@ -175,9 +177,7 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
       if (min_component(appearance.albedo) < kDark)
         arriving = component_min(arriving, unshadowed_irradiance(lights_, hits.points[i]) * kInversePi);
     }
-    const bool is_elsewhere = appearance.translucent && mirrored_by_bodies_ == MirroredByBodies::left_out;
-    if (appearance.mirrors() && !is_elsewhere)
-      sample.specular += arriving * appearance.mirrored_share(cosine) * (past_fuzz * past_fuzz);
+    if (mirrors) sample.specular += arriving * appearance.mirrored_share(cosine) * (past_fuzz * past_fuzz);
     if (batch.specular == Specular::uniform) sample.specular += arriving * appearance.fuzz_share(cosine);
   }
 }
