@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <boost/beast/core/detail/base64.hpp>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -255,8 +256,8 @@ void take_screenshot(const std::string& scene, const std::string& path, const st
   browser.comes_true(tab, "document.querySelector('#points circle[aria-label^=lambert]')");
   browser.run(tab, "new Promise((done) => setTimeout(done, 500))");
   const std::string base64 = browser.call(tab, "Page.captureScreenshot", {{"format", "png"}}).at("data");
-  std::string bytes(beast::detail::base64::decoded_size(base64.size()), '\0');
-  bytes.resize(beast::detail::base64::decode(bytes.data(), base64.data(), base64.size()).first);
+  std::string bytes(boost::beast::detail::base64::decoded_size(base64.size()), '\0');
+  bytes.resize(boost::beast::detail::base64::decode(bytes.data(), base64.data(), base64.size()).first);
   put_bytes(path, bytes);
 }
 

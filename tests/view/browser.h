@@ -109,7 +109,7 @@ class Browser {
     Json message{
         {"id", ++calls_}, {"method", method}, {"params", parameters.is_null() ? Json::object() : parameters}};
     if (!tab.session.empty()) message["sessionId"] = tab.session;
-    socket_->write(asio::buffer(message.dump()));
+    socket_->send_text(message.dump());
     while (true) {
       const Json answer = read();
       if (answer.value("id", 0) != calls_) {
@@ -135,16 +135,12 @@ class Browser {
     if (path.empty())
       throw std::runtime_error("no browser (Debian's chromium-headless-shell): " +
                                bytes_of(folder_.file("log")));
-    socket_.emplace(io_);
-    socket_->read_message_max(std::size_t(256) << 20);
-    beast::get_lowest_layer(*socket_).connect(
-        Tcp::endpoint(asio::ip::make_address("127.0.0.1"), std::uint16_t(std::stoi(port))));
-    socket_->handshake("127.0.0.1:" + port, path);
+    socket_.emplace(std::uint16_t(std::stoi(port)), "127.0.0.1:" + port, path, "");
   }
   Json read() {
-    beast::flat_buffer buffer;
-    socket_->read(buffer);
-    return Json::parse(beast::buffers_to_string(buffer.data()));
+    const std::optional<WebSocket::Message> message = socket_->read_within(std::chrono::minutes(10));
+    if (!message) throw std::runtime_error("the browser is gone: " + bytes_of(folder_.file("log")));
+    return Json::parse(message->bytes);
   }
   void note(const Json& event) {
     const std::string method = event.value("method", "");
@@ -155,8 +151,7 @@ class Browser {
 
   ScratchFolder folder_;
   pid_t pid_ = -1;
-  asio::io_context io_;
-  std::optional<beast::websocket::stream<beast::tcp_stream>> socket_;
+  std::optional<WebSocket> socket_;
   int calls_ = 0;
 };
 

@@ -112,7 +112,7 @@ TEST_F(LongViewFrames, TheSlider) {
               "s.dispatchEvent(new Event('input')); })()");
   ASSERT_TRUE(browser.comes_true(tab, kIsFinal + "2"));
   EXPECT_EQ(browser.run(tab, "document.getElementById('shown-frame').textContent"), "6");
-  const std::uint16_t port = view->endpoint().port();
+  const std::uint16_t port = view->port();
   view.reset();
   ASSERT_TRUE(browser.comes_true(tab, "!document.getElementById('lost').hidden"));
   view.emplace(folder.scene, port);

@@ -176,8 +176,7 @@ void send_odd_messages(int rounds, std::uint64_t seed) {
   ASSERT_TRUE(page.read_final());
   OddMessages messages(seed);
   const auto send = [&](const std::string& message) {
-    page.socket().binary(true);  // broken bytes are no text
-    page.socket().write(asio::buffer(message));
+    page.socket.send_binary(message);  // broken bytes are no text
   };
   for (int round = 0; round < rounds; ++round) {
     std::string sent;

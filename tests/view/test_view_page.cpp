@@ -385,7 +385,7 @@ TEST_F(LongViewPage, TheServerIsKilledAndBack) {
   final_edits();
   type("media.stone.specular_ior", "specular_ior", "1.4");
   const std::vector<std::string> edits = final_edits(2);
-  const std::uint16_t port = view->endpoint().port();
+  const std::uint16_t port = view->port();
   view.reset();
   ASSERT_TRUE(browser.comes_true(tab, "!document.getElementById('lost').hidden"));
   view.emplace(folder.scene, port);

@@ -19,9 +19,9 @@ TEST(ViewProgram, ServesUntilCtrlC) {
   ViewClient page = page_of(std::uint16_t(std::stoi(port)));
   ASSERT_TRUE(page.read_final());
   EXPECT_EQ(page.frame.width, 40u);
-  EXPECT_THROW(ViewClient({asio::ip::make_address("127.0.0.1"), std::uint16_t(std::stoi(port))},
-                          "127.0.0.1:" + port, "/" + std::string(kToken) + "/socket", "http://evil.example"),
-               beast::system_error);
+  EXPECT_THROW(ViewClient(std::uint16_t(std::stoi(port)), "127.0.0.1:" + port,
+                          "/" + std::string(kToken) + "/socket", "http://evil.example"),
+               WebSocketDeclined);
   EXPECT_TRUE(view.complains("foreign Origin"));
   page.set({{"media.stone.eta", 1.4}});
   ASSERT_TRUE(page.read_final(2));
@@ -166,9 +166,8 @@ TEST(ViewProgram, OpensItsUrlOnADesktop) {
 // Claim: what cannot be is said in one line, with the exit codes of all commands.
 TEST(ViewProgram, BadArguments) {
   const ViewFolder folder;
-  asio::io_context io;
-  const Tcp::acceptor other(io, Tcp::endpoint(asio::ip::make_address("127.0.0.1"), 0));
-  const std::string taken = std::to_string(other.local_endpoint().port());
+  const Listener other;
+  const std::string taken = std::to_string(other.port());
   struct Row {
     std::vector<std::string> words;
     int exit_code;

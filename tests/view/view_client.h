@@ -6,9 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
@@ -25,14 +22,11 @@
 #include "session/session_records.h"
 #include "view/view_frame.h"
 #include "view/view_server.h"
+#include "web_client.h"
 
 namespace opaline::test {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
 using Json = nlohmann::json;
-using Tcp = asio::ip::tcp;
 
 inline constexpr const char* kToken = "a-token-of-this-test";
 
@@ -81,9 +75,9 @@ class RunningView {
     const std::string address = url();
     return address.substr(7, address.find('/', 7) - 7);
   }
-  Tcp::endpoint endpoint() const {
+  std::uint16_t port() const {
     const std::string name = host();
-    return {asio::ip::make_address("127.0.0.1"), std::uint16_t(std::stoi(name.substr(name.find(':') + 1)))};
+    return std::uint16_t(std::stoi(name.substr(name.find(':') + 1)));
   }
   /// Whether a line of the log holds the text, now or within seconds.
   bool has_refused(const std::string& text) {
@@ -146,27 +140,14 @@ class ViewClient {
  public:
   /// receive_buffer: bytes that wait unread before the server notices; 0: as the machine has it
   explicit ViewClient(const RunningView& view, const std::string& origin = "", int receive_buffer = 0)
-      : ViewClient(view.endpoint(), view.host(), "/" + std::string(kToken) + "/socket",
+      : ViewClient(view.port(), view.host(), "/" + std::string(kToken) + "/socket",
                    origin.empty() ? "http://" + view.host() : origin, receive_buffer) {}
 
-  ViewClient(const Tcp::endpoint& endpoint, const std::string& host, const std::string& path,
-             const std::string& origin, int receive_buffer = 0)
-      : socket_(io_) {
-    socket_.read_message_max(0);
-    Tcp::socket& line = beast::get_lowest_layer(socket_).socket();
-    line.open(endpoint.protocol());
-    if (receive_buffer > 0) line.set_option(asio::socket_base::receive_buffer_size(receive_buffer));
-    beast::get_lowest_layer(socket_).connect(endpoint);
-    socket_.set_option(beast::websocket::stream_base::decorator(
-        [origin](beast::websocket::request_type& request) { request.set(http::field::origin, origin); }));
-    socket_.handshake(host, path);
-  }
+  ViewClient(std::uint16_t port, const std::string& host, const std::string& path, const std::string& origin,
+             int receive_buffer = 0)
+      : socket(port, host, path, origin, receive_buffer) {}
 
-  void send(const Json& message) { send_text(message.dump()); }
-  void send_text(const std::string& text) {
-    socket_.text(true);
-    socket_.write(asio::buffer(text));
-  }
+  void send(const Json& message) { socket.send_text(message.dump()); }
   void set(const Json& values, std::uint64_t stroke = 0) {
     send({{"do", "set"}, {"values", values}, {"stroke", stroke}});
   }
@@ -174,37 +155,20 @@ class ViewClient {
   /// Reads one message; false where none comes within a minute, or the server has closed.
   bool read() {
     if (read_within(std::chrono::minutes(1))) return true;
-    beast::get_lowest_layer(socket_).close();
-    io_.restart();
-    io_.run();
+    socket.close();
     return false;
   }
 
   /// The same within a time, after which reading may go on.
   bool read_within(std::chrono::milliseconds time) {
-    if (!is_reading_) {
-      is_reading_ = true;
-      result_.reset();
-      socket_.async_read(in_, [this](beast::error_code error, std::size_t) {
-        result_ = error;
-        is_reading_ = false;
-      });
-    }
-    io_.restart();
-    io_.run_one_for(std::chrono::milliseconds(0));
-    const auto end = std::chrono::steady_clock::now() + time;
-    while (!result_ && std::chrono::steady_clock::now() < end) io_.run_one_until(end);
-    close_code = socket_.reason().code;
-    if (!result_ || *result_) return false;
-    const std::string bytes = beast::buffers_to_string(in_.data());
-    in_.consume(in_.size());
-    result_.reset();
-    if (socket_.got_text()) {
-      const Json text = Json::parse(bytes);
+    const std::optional<WebSocket::Message> message = socket.read_within(time);
+    if (!message) return false;
+    if (message->is_text) {
+      const Json text = Json::parse(message->bytes);
       texts[text.at("is")] = text;
       newest = text.at("is");
     } else {
-      const Frame news = frame_of(bytes);
+      const Frame news = frame_of(message->bytes);
       const bool is_reference = news.step == PictureStep::reference;
       (is_reference ? reference : frame) = news;
       ++frames;
@@ -235,21 +199,12 @@ class ViewClient {
     return read_until([&] { return texts.contains("told"); }) ? texts["told"].at("text") : "";
   }
 
+  WebSocket socket;
   std::map<std::string, Json> texts;
   std::string newest;
   Frame frame, reference;
   std::size_t frames = 0;
   bool answers_frames = true;
-  unsigned close_code = 0;
-
-  beast::websocket::stream<beast::tcp_stream>& socket() { return socket_; }
-
- private:
-  asio::io_context io_;
-  beast::websocket::stream<beast::tcp_stream> socket_;
-  beast::flat_buffer in_;
-  std::optional<beast::error_code> result_;
-  bool is_reading_ = false;
 };
 
 /// The picture that `opaline render` makes, R G B A as bits of halves.
