@@ -12,7 +12,7 @@ root=$(dirname "$(dirname "$(realpath "${BASH_SOURCE[0]}")")")
 # shellcheck disable=SC2034
 build_packages=(g++ cmake ninja-build libembree-dev libcgal-dev libopenmesh-dev libopenexr-dev libpng-dev
   libopenimageio-dev openimageio-tools libtbb-dev nlohmann-json3-dev libcli11-dev libfmt-dev libhdf5-dev libxxhash-dev
-  libpugixml-dev libboost-dev libmurmurhash-dev libjs-chart.js help2man)
+  libpugixml-dev libdraco-dev libmeshoptimizer-dev libboost-dev libmurmurhash-dev libjs-chart.js help2man)
 # The pages of the view and of reports are tested in a browser, 98 MB to fetch and 300 MB on the disk.
 # shellcheck disable=SC2034
 test_packages=(libgtest-dev parallel clang-format chromium-headless-shell python3-jsonschema python3-dev python3-venv)

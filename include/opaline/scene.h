@@ -282,6 +282,9 @@ struct Gloss {
 /// Reflectance of an opaque shape without one in the scene.
 inline constexpr Rgb kDefaultReflectance{0.5, 0.5, 0.5};
 
+/// Shape::opacity below this is a hole.
+inline constexpr float kHoleOpacity = 0.5f;
+
 struct Shape {
   std::string name;
   ShapeSource source;
@@ -298,6 +301,7 @@ struct Shape {
   std::optional<Texture> normal_map{};           ///< its scale applies to the slopes
   std::optional<Texture> bump_map{};             ///< heights; its scale is in mm
   std::optional<Texture> displacement{};         ///< heights moving the vertices; its scale is in mm
+  std::optional<Texture> opacity{};              ///< opaque shapes: holes where it is below kHoleOpacity
   std::optional<Texture> emission_texture{};     ///< factor of the radiance of its ShapeLight
   std::optional<Gloss> gloss{};                  ///< specular reflection of an opaque shape; none: diffuse
   Fuzz fuzz{};                                   ///< fuzz of an opaque shape
@@ -314,6 +318,7 @@ void for_each_textured(const Shape& shape, const Visit& visit) {
   visit(1.0, shape.bump_map, SurfacePart::normals);
   for_each_textured(shape.fuzz, visit);
   if (shape.displacement) visit(1.0, shape.displacement, SurfacePart::normals);
+  if (shape.opacity) visit(1.0, shape.opacity, SurfacePart::normals);
   if (shape.emission_texture) visit(1.0, shape.emission_texture, SurfacePart::color);
   if (!shape.gloss) return;
   visit(shape.gloss->metalness, shape.gloss->metalness_texture, SurfacePart::color);

@@ -7,6 +7,7 @@
 namespace opaline {
 namespace {
 
+constexpr const char *kMeshopt = "EXT_meshopt_compression", *kDraco = "KHR_draco_mesh_compression";
 constexpr int kMostDepth = 128;
 constexpr std::array<std::string_view, 6> kLazyLists{"materials", "cameras",  "skins",
                                                      "images",    "textures", "animations"};
@@ -26,6 +27,16 @@ GltfAttributes read_attributes(const GltfRecord& record) {
 GltfBufferView read_view(const GltfRecord& record) {
   return {record.need("buffer").index("buffer"), record.size("byteOffset", 0),
           record.need("byteLength").size("byteLength", 0), record.size("byteStride", 0)};
+}
+
+GltfCompressedView read_compressed_view(const GltfRecord& record) {
+  return {.buffer = record.need("buffer").index("buffer"),
+          .offset = record.size("byteOffset", 0),
+          .length = record.need("byteLength").size("byteLength", 0),
+          .stride = record.need("byteStride").size("byteStride", 0),
+          .count = record.need("count").size("count", 0),
+          .mode = record.need("mode").text("mode"),
+          .filter = record.text("filter", "NONE")};
 }
 
 GltfSparse read_sparse(const GltfRecord& record) {
@@ -59,6 +70,11 @@ GltfMesh read_mesh(const GltfRecord& record) {
                             .mode = part.size("mode", kGltfTriangles)};
     for (const GltfRecord& target : part.records("targets"))
       primitive.targets.push_back(read_attributes(target));
+    if (const GltfRecord extensions = part.record("extensions"); extensions.has(kDraco)) {
+      const GltfRecord draco = extensions.record(kDraco);
+      primitive.draco_view = draco.need("bufferView").index("bufferView");
+      primitive.draco_ids = read_attributes(draco.need("attributes").record("attributes"));
+    }
     mesh.primitives.push_back(std::move(primitive));
   }
   return mesh;
@@ -122,8 +138,13 @@ class GltfBuilder {
     const std::size_t index = counts_[list_]++;
     const GltfRecord record(gltf_.path, record_name(list_, index), json);
     if (list_ == "buffers")
-      buffers_.push_back({record.need("byteLength").size("byteLength", 0), record.text("uri")});
-    if (list_ == "bufferViews") gltf_.views.push_back(read_view(record));
+      buffers_.push_back({record.need("byteLength").size("byteLength", 0), record.text("uri"),
+                          record.record("extensions").record(kMeshopt).flag("fallback", false)});
+    if (list_ == "bufferViews") {
+      gltf_.views.push_back(read_view(record));
+      if (const GltfRecord extensions = record.record("extensions"); extensions.has(kMeshopt))
+        gltf_.compressed_views[index] = read_compressed_view(extensions.record(kMeshopt));
+    }
     if (list_ == "accessors") gltf_.accessors.push_back(read_accessor(record));
     if (list_ == "meshes") gltf_.meshes.push_back(read_mesh(record));
     if (list_ == "nodes") take_node(index, record);

@@ -11,6 +11,7 @@ namespace opaline {
 struct GltfBuffer {
   std::size_t length = 0;
   std::string uri;
+  bool is_fallback = false;  ///< true: buffer of compressed views, without data
 };
 
 /// Reads a file's JSON, record by record.

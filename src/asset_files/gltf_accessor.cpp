@@ -15,25 +15,16 @@ struct Elements {
   std::size_t count = 0, stride = 0;
 };
 
-enum Component : std::size_t {
-  kByte = 5120,
-  kUnsignedByte,
-  kShort,
-  kUnsignedShort,
-  kUnsignedInt = 5125,
-  kFloat
-};
-
 std::size_t component_bytes(std::size_t type) {
   switch (type) {
-    case kByte:
-    case kUnsignedByte:
+    case kGltfByte:
+    case kGltfUnsignedByte:
       return 1;
-    case kShort:
-    case kUnsignedShort:
+    case kGltfShort:
+    case kGltfUnsignedShort:
       return 2;
-    case kUnsignedInt:
-    case kFloat:
+    case kGltfUnsignedInt:
+    case kGltfFloat:
       return 4;
     default:
       return 0;
@@ -50,15 +41,15 @@ double number(const char* bytes, bool normalized) {
 
 double number(const char* bytes, std::size_t type, bool normalized) {
   switch (type) {
-    case kByte:
+    case kGltfByte:
       return number<std::int8_t>(bytes, normalized);
-    case kUnsignedByte:
+    case kGltfUnsignedByte:
       return number<std::uint8_t>(bytes, normalized);
-    case kShort:
+    case kGltfShort:
       return number<std::int16_t>(bytes, normalized);
-    case kUnsignedShort:
+    case kGltfUnsignedShort:
       return number<std::uint16_t>(bytes, normalized);
-    case kUnsignedInt:
+    case kGltfUnsignedInt:
       return number<std::uint32_t>(bytes, normalized);
     default:
       return number<float>(bytes, normalized);
@@ -198,14 +189,14 @@ void check_positions_type(const GltfModel& gltf, std::uint32_t index) {
   const std::size_t type = gltf.accessors[index].component;
   for (const auto* names : {&gltf.extensions_used, &gltf.extensions_required})
     if (std::ranges::find(*names, kQuantization) != names->end()) return;
-  if (type != kFloat)
+  if (type != kGltfFloat)
     fail_at(gltf.path, record_name("accessors", index), "has positions that are not floats",
             "a componentType of 5126, or " + std::string(kQuantization), std::to_string(type));
 }
 
 void check_unsigned(const GltfModel& gltf, std::uint32_t index) {
   const std::size_t type = gltf.accessors[index].component;
-  if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt)
+  if (type != kGltfUnsignedByte && type != kGltfUnsignedShort && type != kGltfUnsignedInt)
     fail_at(gltf.path, record_name("accessors", index), "cannot hold indices",
             "a componentType of 5121, 5123 or 5125", std::to_string(type));
 }

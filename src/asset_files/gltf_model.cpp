@@ -10,6 +10,7 @@
 #include "asset_files/asset_file.h"
 #include "asset_files/build_gltf.h"
 #include "asset_files/gltf_animation.h"
+#include "asset_files/gltf_compression.h"
 #include "asset_files/gltf_file.h"
 
 #define XXH_INLINE_ALL
@@ -20,9 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 3> compressions{"KHR_draco_mesh_compression", "EXT_meshopt_compression",
-                                                  "KHR_meshopt_compression"};
-
 void add_hash(std::string& contents, std::string_view bytes) {
   const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
   XXH128_canonical_t canonical;
@@ -31,10 +29,12 @@ void add_hash(std::string& contents, std::string_view bytes) {
 }
 
 void check_compression(const GltfModel& gltf) {
-  for (const std::string& name : gltf.extensions_required)
-    if (std::ranges::find(compressions, name) != compressions.end())
-      throw bad_file(gltf.path, "its meshes are compressed by " + name + ", which is not supported",
-                     "an asset exported without compression");
+  constexpr const char* kUnsupported = "KHR_meshopt_compression";
+  if (std::ranges::find(gltf.extensions_required, kUnsupported) != gltf.extensions_required.end())
+    throw bad_file(gltf.path,
+                   std::string("its meshes are compressed by ") + kUnsupported + ", which is not supported",
+                   "an asset exported without compression, or with EXT_meshopt_compression or "
+                   "KHR_draco_mesh_compression");
 }
 
 /// Checks indices between the records; names are as in their JSON.
@@ -97,6 +97,8 @@ class ReferenceCheck {
         attributes(place + '.' + record_name("targets", t), primitive.targets[t]);
       optional(place + ".indices", primitive.indices, gltf_.accessors.size());
       optional(place + ".material", primitive.material, gltf_.count("materials"));
+      optional(place + ".extensions.KHR_draco_mesh_compression.bufferView", primitive.draco_view,
+               gltf_.views.size());
     }
   }
 
@@ -161,7 +163,11 @@ std::string bytes_of_uri(const GltfModel& gltf, std::size_t index, const std::st
 void read_buffers(GltfModel& gltf, std::string_view binary, const std::vector<GltfBuffer>& buffers,
                   std::vector<std::string>& files) {
   for (std::size_t i = 0; i < buffers.size(); ++i) {
-    const auto& [length, uri] = buffers[i];
+    const auto& [length, uri, is_fallback] = buffers[i];
+    if (is_fallback) {
+      gltf.buffers.emplace_back();
+      continue;
+    }
     std::string_view bytes = binary;
     if (!uri.empty()) {
       const std::size_t known = files.size();
@@ -227,7 +233,9 @@ std::shared_ptr<const GltfModel> load_gltf(const std::string& path) {
   check_compression(*gltf);
   std::vector<std::string> files{path};
   read_buffers(*gltf, chunks.binary, buffers, files);
+  decode_buffer_views(*gltf);
   ReferenceCheck(*gltf).run();
+  decode_primitives(*gltf);
   if (chunks.binary.data() == nullptr) gltf->file = {};
   kept().gltf = gltf;
   kept().files = std::move(files);

@@ -24,6 +24,22 @@ struct GltfBufferView {
   std::size_t offset, length, stride;  ///< stride 0: packed
 };
 
+/// EXT_meshopt_compression of a buffer view.
+struct GltfCompressedView {
+  std::uint32_t buffer;
+  std::size_t offset, length, stride, count;
+  std::string mode, filter;
+};
+
+enum GltfComponent : std::size_t {
+  kGltfByte = 5120,
+  kGltfUnsignedByte,
+  kGltfShort,
+  kGltfUnsignedShort,
+  kGltfUnsignedInt = 5125,
+  kGltfFloat
+};
+
 struct GltfSparse {
   std::size_t count = 0, index_offset = 0, value_offset = 0;
   std::uint32_t index_view = 0, value_view = 0;
@@ -45,6 +61,8 @@ struct GltfPrimitive {
   std::uint32_t indices = kNoRecord, material = kNoRecord;
   std::size_t mode = 0;
   std::vector<GltfAttributes> targets{};
+  std::uint32_t draco_view = kNoRecord;  ///< KHR_draco_mesh_compression
+  GltfAttributes draco_ids{};            ///< attributes in Draco's data, by name
 };
 
 inline constexpr std::size_t kGltfTriangles = 4, kGltfTriangleStrip = 5, kGltfTriangleFan = 6;
@@ -82,6 +100,7 @@ struct GltfModel {
   std::deque<std::string> own_bytes;  ///< the same of other files and URIs
   std::vector<std::string_view> buffers;
   std::vector<GltfBufferView> views;
+  std::map<std::size_t, GltfCompressedView> compressed_views;  ///< by buffer view
   std::vector<GltfAccessor> accessors;
   std::vector<GltfMesh> meshes;
   std::deque<GltfNode> nodes;

@@ -63,7 +63,7 @@ struct AssetPlace {
 SurfaceTranslation translate_materialx(const std::string& file_and_name, const AssetPlace& asset,
                                        AssetScene& scene);
 
-AssetScene import_gltf(const std::string& path, const std::string& mesh_path);
+AssetScene import_gltf(const std::string& path, const std::string& mesh_path, const std::string& animation);
 AssetScene import_obj(const std::string& path, const std::string& mesh_path);
 /// PLY, STL and OFF.
 AssetScene import_mesh(const std::string& path, const std::string& mesh_path);

@@ -56,7 +56,7 @@ constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness
 /// Colour, metalness and roughness from either of glTF's models.
 struct BaseLayer {
   Vec3d color{1, 1, 1};
-  double metalness = 1, roughness = 1;
+  double metalness = 1, roughness = 1, alpha = 1;
   GltfRecord color_texture, roughness_texture;  ///< as in a material, or without an index
   const char* color_texture_name;
 };
@@ -68,7 +68,7 @@ BaseLayer metallic_roughness(const GltfRecord& pbr) {
                  .roughness_texture = pbr.record("metallicRoughnessTexture"),
                  .color_texture_name = "baseColorTexture"};
   if (const std::vector<double> c = pbr.numbers("baseColorFactor", 4); !c.empty())
-    for (std::size_t i = 0; i < 3; ++i) base.color[i] = c[i];
+    base.color = {c[0], c[1], c[2]}, base.alpha = c[3];
   return base;
 }
 
@@ -86,7 +86,7 @@ BaseLayer specular_glossiness(const GltfRecord& model) {
                  .color_texture_name = "diffuseTexture"};
   Vec3d diffuse(1);
   if (const std::vector<double> c = model.numbers("diffuseFactor", 4); !c.empty())
-    for (std::size_t i = 0; i < 3; ++i) diffuse[i] = c[i];
+    diffuse = {c[0], c[1], c[2]}, base.alpha = c[3];
   const Vec3d specular = color_of(model, "specularFactor", Vec3d(1));
   const double rest = 1 - max_component(specular), bright = brightness(specular);
   if (bright > kDielectric) {
@@ -132,6 +132,7 @@ class MaterialTranslator {
       translated("normalTexture: " + tangents());
     }
     add_emission(surface.keys);
+    add_opacity(surface.keys, !surface.medium.is_null());
     tell_losses(!surface.medium.is_null());
     return surface;
   }
@@ -188,6 +189,7 @@ class MaterialTranslator {
   }
 
   static constexpr std::array<const char*, 3> kChannels{"r", "g", "b"};
+  static constexpr std::size_t kAlpha = 3;
 
   /// The channel of a number's texture: roughness is green, metalness blue.
   static std::optional<Json> channel(std::optional<Json> texture, const char* name) {
@@ -197,8 +199,9 @@ class MaterialTranslator {
 
   void add_opaque(SurfaceTranslation& surface) {
     const double metalness = base_.metalness, roughness = add_grain(surface.keys);
-    surface.keys["reflectance"] = times(texture(base_.color_texture, base_.color_texture_name),
-                                        triple_json(surface.reflectance), triple_json(Vec3d(1)));
+    const std::optional<Json> colors = texture(base_.color_texture, base_.color_texture_name);
+    if (colors && scene_.textures.back()->has_channel(kAlpha)) alphas_ = colors;
+    surface.keys["reflectance"] = times(colors, triple_json(surface.reflectance), triple_json(Vec3d(1)));
     const std::optional<Json> both = texture(base_.roughness_texture, "metallicRoughnessTexture");
     if (metalness > 0) surface.keys["metalness"] = times(channel(both, "b"), metalness, 1.0);
     surface.keys["specular_roughness"] = times(channel(both, "g"), roughness, 1.0);
@@ -223,6 +226,27 @@ class MaterialTranslator {
     if (!picture && info.index("index") != kNoRecord) return not_carried("emissiveFactor");
     keys["emission"] = times(std::move(picture), triple_json(radiance), triple_json(Vec3d(1)));
     translated("emissiveFactor -> emission " + short_triple(radiance));
+  }
+
+  /// Holes of an opaque surface; partial transparency becomes holes too.
+  void add_opacity(Json& keys, bool is_translucent) {
+    constexpr double kThreshold = kHoleOpacity;
+    const std::string mode = material_.text("alphaMode", "OPAQUE");
+    if (mode == "OPAQUE" || (!alphas_ && base_.alpha >= 1)) return;
+    const double cutoff = mode == "MASK" ? material_.number("alphaCutoff", .5) : .5;
+    const std::string label = "alphaMode " + in_quotes(mode);
+    if (!alphas_ || is_translucent || keys.contains("emission"))
+      return warn(label + fmt::format(": ignored, {} has no holes",
+                                      is_translucent ? "a translucent body"
+                                      : alphas_      ? "an emitting surface"
+                                                     : "a surface without a texture of alpha"));
+    if (!(cutoff > 0)) return;
+    Json& opacity = keys["opacity"] = channel(alphas_, "a").value();
+    if (const double scale = base_.alpha * kThreshold / cutoff; scale != 1) opacity["scale"] = scale;
+    if (mode == "MASK")
+      translated(fmt::format("{}, alphaCutoff {:.3g} -> opacity", label, cutoff));
+    else
+      warn(label + ": holes where alpha is below 0.5; partial transparency is not supported");
   }
 
   /// Keeps both alphas exact: returns the factor's roughness without anisotropy.
@@ -434,18 +458,7 @@ class MaterialTranslator {
     for (const std::string& extension : extensions_.keys())
       for (const std::string& key : values(extension.c_str()).keys())
         if (key.ends_with("Texture")) add(values(extension.c_str()), key);
-    tell_alpha();
     tell_extensions(is_translucent);
-  }
-
-  /// Skips an alpha of 1 everywhere.
-  void tell_alpha() {
-    const std::string mode = material_.text("alphaMode", "OPAQUE");
-    const std::vector<double> factor = material_.record("pbrMetallicRoughness").numbers("baseColorFactor", 4);
-    const bool may_be_clear =
-        base_.color_texture.index("index") != kNoRecord || (!factor.empty() && factor[3] < 1);
-    if (mode != "OPAQUE" && may_be_clear)
-      warn("alphaMode " + in_quotes(mode) + ": ignored, the surface has no holes");
   }
 
   bool transmits(const std::string& extension) const {
@@ -476,6 +489,7 @@ class MaterialTranslator {
   Json json_;
   GltfRecord material_, extensions_;
   BaseLayer base_;
+  std::optional<Json> alphas_;  // texture of the colour, if it has alpha
   const MaterialUse& use_;
   std::string label_;
   AssetScene& scene_;

@@ -23,10 +23,13 @@ AssetKind kind_of(const std::string& path) {
   return is_mesh ? AssetKind::mesh : AssetKind::none;
 }
 
-AssetScene import_scene(const std::string& path, const std::string& mesh_path) {
-  switch (kind_of(path)) {
+AssetScene import_scene(const std::string& path, const std::string& mesh_path, const std::string& animation) {
+  const AssetKind kind = kind_of(path);
+  if (!animation.empty() && kind != AssetKind::gltf)
+    throw bad_file(path, "has no animations", "a glTF file with animations");
+  switch (kind) {
     case AssetKind::gltf:
-      return import_gltf(path, mesh_path);
+      return import_gltf(path, mesh_path, animation);
     case AssetKind::mesh:
       return import_mesh(path, mesh_path);
     default:
@@ -67,6 +70,8 @@ void replace_materials(AssetScene& scene, const std::string& material, const Ass
     for (const char* key :
          {"name", "file", "part", "animation", "animation_time", "transform", "normals", "vertex_colors"})
       if (shape.contains(key)) bare[key] = shape[key];
+    if (shape.contains("opacity") && surface.medium.is_null() && !surface.keys.contains("emission"))
+      bare["opacity"] = shape["opacity"];
     shape = std::move(bare);
     if (scene.has_vertex_colors) shape["vertex_colors"] = false;
     if (surface.medium.is_null())
@@ -84,9 +89,9 @@ bool is_asset_name(const std::string& path) {
   return kind_of(path) != AssetKind::none;
 }
 
-ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
-                           const std::string& material) {
-  AssetScene scene = import_scene(path, mesh_path);
+ImportedAsset import_asset(const std::string& path, const std::string& mesh_path, const std::string& material,
+                           const std::string& animation) {
+  AssetScene scene = import_scene(path, mesh_path, animation);
   const bool own_camera = !scene.camera.is_null(), own_lights = scene.center_irradiance > 0;
   check_extent(path, scene);
   if (!material.empty()) replace_materials(scene, material, {path, mesh_path});

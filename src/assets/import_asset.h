@@ -38,11 +38,11 @@ bool is_asset_name(const std::string& path);
 
 /// in    path: an asset; mesh_path: its name in the scene file, relative to that file's folder; material: a
 ///       MaterialX file replacing the asset's materials, "skin.mtlx" or "skin.mtlx#name" of a surface or
-///       material in it
+///       material in it; animation: name or index of a glTF animation; empty: the first readable one
 /// out   a valid scene with a visible shape: with a camera and lights, the asset's or default ones
 /// error Error{bad_input} naming the file and the record: missing, broken, or without a triangle
 ImportedAsset import_asset(const std::string& path, const std::string& mesh_path,
-                           const std::string& material = {});
+                           const std::string& material = {}, const std::string& animation = {});
 
 /// Overrides placing the default camera and lights of the asset's scene.
 /// in    camera: position of the camera in use, for the lights; none: the default one

@@ -77,8 +77,9 @@ class NodeWalk {
 
 class GltfImporter {
  public:
-  GltfImporter(const GltfModel& gltf, std::string mesh_path)
-      : gltf_(gltf), mesh_path_(std::move(mesh_path)) {}
+  /// animation: name or index; empty: the first readable one with an effect
+  GltfImporter(const GltfModel& gltf, std::string mesh_path, const std::string& animation)
+      : gltf_(gltf), mesh_path_(std::move(mesh_path)), animation_(animation) {}
 
   AssetScene run() {
     scene_.mm_per_unit = 1000;
@@ -113,8 +114,12 @@ class GltfImporter {
     bool is_moving;
   };
 
-  /// The first readable one with an effect.
   void choose_animation() {
+    if (!animation_.empty()) {
+      motion_.emplace(gltf_, find_animation(gltf_, animation_));
+      if (motion_->is_empty())
+        throw bad_file(gltf_.path, "its animation moves nothing", "another animation", in_quotes(animation_));
+    }
     for (std::size_t i = 0; i < gltf_.count("animations") && !motion_; ++i) try {
         motion_.emplace(gltf_, i);
         if (motion_->is_empty()) motion_.reset();
@@ -126,7 +131,8 @@ class GltfImporter {
     scene_.translated.push_back("animation " + in_quotes(motion_->name()) + " -> " + motion_->frames_text());
     for (std::size_t i = 0; i < gltf_.count("animations"); ++i)
       if (i != motion_->index())
-        scene_.not_carried.push_back("animation " + in_quotes(animation_name(gltf_, i)) + ": not imported");
+        scene_.not_carried.push_back("animation " + in_quotes(animation_name(gltf_, i)) +
+                                     ": not imported; `opaline import --animation` chooses one");
   }
 
   /// Roots of the default scene, or the first; without scenes all nodes without a parent.
@@ -327,8 +333,9 @@ class GltfImporter {
   }
 
   void tell_losses() {
-    constexpr std::array<std::string_view, 4> read{"KHR_lights_punctual", "KHR_mesh_quantization",
-                                                   "KHR_texture_transform", "EXT_mesh_gpu_instancing"};
+    constexpr std::array<std::string_view, 6> read{"KHR_lights_punctual",     "KHR_mesh_quantization",
+                                                   "KHR_texture_transform",   "EXT_mesh_gpu_instancing",
+                                                   "EXT_meshopt_compression", "KHR_draco_mesh_compression"};
     const std::set<std::string> required(gltf_.extensions_required.begin(), gltf_.extensions_required.end());
     std::set<std::string> used = required;
     used.insert(gltf_.extensions_used.begin(), gltf_.extensions_used.end());
@@ -344,6 +351,7 @@ class GltfImporter {
 
   const GltfModel& gltf_;
   std::string mesh_path_;
+  const std::string& animation_;
   AssetScene scene_;
   std::optional<GltfMotion> motion_;
   UniqueNames shape_names_, medium_names_, light_names_;
@@ -355,9 +363,9 @@ class GltfImporter {
 
 }  // namespace
 
-AssetScene import_gltf(const std::string& path, const std::string& mesh_path) {
+AssetScene import_gltf(const std::string& path, const std::string& mesh_path, const std::string& animation) {
   const std::shared_ptr<const GltfModel> gltf = load_gltf(path);
-  AssetScene scene = GltfImporter(*gltf, mesh_path).run();
+  AssetScene scene = GltfImporter(*gltf, mesh_path, animation).run();
   scene.bytes = gltf->record_bytes;
   return scene;
 }

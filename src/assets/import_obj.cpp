@@ -162,6 +162,7 @@ class ObjImporter {
     std::optional<Bump> bump;
     Vec3d emission{0, 0, 0};
     std::optional<Picture> emission_picture;
+    Json opacity;                     ///< texture; null: opaque
     std::vector<std::string> unused;  ///< statements without an analogue, each once
   };
 
@@ -251,7 +252,7 @@ class ObjImporter {
     for (const MtlStatement& statement : material.statements) {
       const MtlUse use = use_of(statement);
       const bool needs_uvs = use == MtlUse::color_map || use == MtlUse::emission_map || use == MtlUse::bump ||
-                             use == MtlUse::normal_map;
+                             use == MtlUse::normal_map || use == MtlUse::opacity_map;
       if (needs_uvs && !has_uvs_)
         add_unused(surface, statement.keyword + " (the mesh has no UVs)");
       else if (use == MtlUse::color)
@@ -260,6 +261,8 @@ class ObjImporter {
         take_picture(material, statement, surface.picture);
       else if (use == MtlUse::emission_map)
         take_picture(material, statement, surface.emission_picture);
+      else if (use == MtlUse::opacity_map)
+        take_opacity(material, statement, surface);
       else if (needs_uvs)
         take_bump(material, statement, surface);
       else if (use == MtlUse::emission)
@@ -276,7 +279,7 @@ class ObjImporter {
                  " is unknown and ignored" + mtl_suggestion(statement.keyword));
     }
     warn_of_ignored(material, transparency, "transparency is not supported; the surface renders opaque");
-    warn_of_ignored(material, textures, "the supported textures are map_Kd, map_Ke, bump and norm");
+    warn_of_ignored(material, textures, "the supported textures are map_Kd, map_Ke, map_d, bump and norm");
     return surface;
   }
 
@@ -368,6 +371,19 @@ class ObjImporter {
     surface.bump = {is_normal_map ? "normal_map" : "bump_map", statement.keyword, std::move(json)};
   }
 
+  /// By the image's alpha where it has one.
+  void take_opacity(const MtlMaterial& material, const MtlStatement& statement, Surface& surface) {
+    const MtlTexture texture = read_mtl_texture(statement.text);
+    std::string file;
+    Json json = texture_of(material, statement, texture, file);
+    if (json.is_null()) return;
+    const std::shared_ptr<const TextureFile> picture = opened(material, statement, texture, file, false);
+    if (picture == nullptr) return;
+    if (picture->has_channel(3)) json["channel"] = "a";
+    if (texture.gain != 1) json["scale"] = texture.gain;
+    surface.opacity = std::move(json);
+  }
+
   void add_shape(const UsedMaterial& used) {
     const std::string& material = used.name;
     const std::string name = names_.take(material == kNoMaterial ? "" : material, "shape");
@@ -380,6 +396,7 @@ class ObjImporter {
       scene_.shapes.back()["reflectance"] = reflectance;
     if (surface.bump) add_bump(material, *surface.bump);
     add_emission(material, surface);
+    add_opacity(material, surface);
     if (!surface.unused.empty())
       scene_.not_carried.push_back(material_label(material) + ": " + in_a_row(surface.unused) +
                                    (surface.unused.size() == 1 ? " is" : " are") + " ignored");
@@ -393,6 +410,17 @@ class ObjImporter {
                                             bump.key == "bump_map"
                                                 ? fmt::format("white {:.4g} mm high", scale)
                                                 : fmt::format("slopes times {:.4g}", scale)));
+  }
+
+  void add_opacity(const std::string& material, const Surface& surface) {
+    if (surface.opacity.is_null()) return;
+    if (scene_.shapes.back().contains("emission")) {
+      scene_.not_carried.push_back(material_label(material) + ": map_d, as an emitting surface has no holes");
+      return;
+    }
+    scene_.shapes.back()["opacity"] = surface.opacity;
+    scene_.translated.push_back(fmt::format("{}: map_d -> opacity {}", material_label(material),
+                                            surface.opacity["texture"].get<std::string>()));
   }
 
   /// Beside an image, black counts as white, as for Kd.

@@ -89,7 +89,8 @@ MtlUse use_of(const MtlStatement& statement) {
   if (has_no_effect(keyword, statement.text)) return MtlUse::no_effect;
   if (keyword == "ke") return MtlUse::emission;
   if (keyword == "map_ke") return MtlUse::emission_map;
-  for (const char* other : {"d", "tr", "tf", "map_d", "map_tr", "map_tf"})
+  if (keyword == "map_d") return MtlUse::opacity_map;
+  for (const char* other : {"d", "tr", "tf", "map_tr", "map_tf"})
     if (keyword == other) return MtlUse::transparency;
   return MtlUse::without_analogue;
 }

@@ -41,7 +41,8 @@ enum class MtlUse {
   normal_map,        ///< norm
   emission,          ///< Ke
   emission_map,      ///< map_Ke
-  transparency,      ///< d, Tr, Tf and their maps
+  opacity_map,       ///< map_d
+  transparency,      ///< d, Tr, Tf and the other maps
   no_effect,         ///< default values, and options of other statements
   without_analogue,  ///< would change the surface
   unknown

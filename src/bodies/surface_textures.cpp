@@ -204,8 +204,8 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world)
     own.has_whole_faces = has_whole_faces(shape);
     std::vector<const Texture*> textures = textures_of(scene, shape);
     for (const Texture* texture : textures) check_tiles(*texture, world.meshes[m], shape.name);
-    // Light and mesh have these, hits do not.
-    for (const std::optional<Texture>* other : {&shape.displacement, &shape.emission_texture})
+    // Light, mesh and rays have these, hits do not.
+    for (const std::optional<Texture>* other : {&shape.displacement, &shape.opacity, &shape.emission_texture})
       if (*other) std::erase_if(textures, [&](const Texture* texture) { return is_of(**other, texture); });
     if (std::ranges::any_of(textures, [](const Texture* texture) { return is_solid(*texture); }))
       own.space = solid_space(solid_to_world(shape));

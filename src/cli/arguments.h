@@ -79,6 +79,7 @@ struct ImportArguments {
   std::string asset;
   std::string scene;       ///< output
   std::string material;    ///< MaterialX, replacing the asset's materials; empty: none
+  std::string animation;   ///< name or index of a glTF animation; empty: the first
   bool overwrite = false;  ///< replaces an existing scene with other contents
   Log log;
 };

@@ -23,8 +23,8 @@ std::string path_from(const std::string& scene, const std::string& asset) {
 }  // namespace
 
 void import_command(const ImportArguments& arguments) {
-  const ImportedAsset asset =
-      import_asset(arguments.asset, path_from(arguments.scene, arguments.asset), arguments.material);
+  const ImportedAsset asset = import_asset(arguments.asset, path_from(arguments.scene, arguments.asset),
+                                           arguments.material, arguments.animation);
   if (!arguments.log.quiet)
     for (const std::string& line : asset.translated) write_line(stderr, line);
   for (const std::string& line : asset.not_carried) write_line(stderr, "not imported: " + line);

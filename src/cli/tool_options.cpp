@@ -16,6 +16,9 @@ void add_import_options(CLI::App& app, ImportArguments& import) {
          "--material", import.material,
          "MaterialX file (.mtlx) that replaces the asset's materials; NAME selects one of several surfaces")
       ->type_name("FILE[#NAME]");
+  app.add_option("--animation", import.animation,
+                 "animation of a glTF file that moves the scene, by its name or number (default: the first)")
+      ->type_name("NAME");
   add_allow_outside(app);
   app.add_flag("--overwrite", import.overwrite, "replace an existing scene file with different content");
   app.add_flag("--quiet", import.log.quiet, "print errors and the parts that are not imported only");

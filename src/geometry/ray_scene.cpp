@@ -67,7 +67,7 @@ RayScene::RayScene(const World& world, RayBuild build, std::span<const MeshMotio
   rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(handles_->scene, quality_of(build));
   for (std::size_t i = 0; i < world.meshes.size(); ++i)
-    attach(world.meshes[i], build, motions.empty() ? MeshMotion{} : motions[i]);
+    attach(world, i, build, motions.empty() ? MeshMotion{} : motions[i]);
   rtcCommitScene(handles_->scene);
   handles_->check();
 }
@@ -82,7 +82,8 @@ void RayScene::Handles::check() {
   }
 }
 
-void RayScene::attach(const Mesh& mesh, RayBuild build, const MeshMotion& motion) {
+void RayScene::attach(const World& world, std::size_t index, RayBuild build, const MeshMotion& motion) {
+  const Mesh& mesh = world.meshes[index];
   RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryBuildQuality(geometry, quality_of(build));
   std::vector<Vertex> vertices(mesh.positions.size());
@@ -105,12 +106,20 @@ void RayScene::attach(const Mesh& mesh, RayBuild build, const MeshMotion& motion
                               sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size()));
   handles_->check();
   std::ranges::copy(mesh.triangles, indices);
+  std::unique_ptr<Cutout> cutout;
+  if (!world.opacities.empty() && world.opacities[index]) {
+    cutout = std::make_unique<Cutout>(*world.opacities[index], mesh.uvs);
+    rtcSetGeometryUserData(geometry, cutout.get());
+    rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
+    rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);
+  }
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(handles_->scene, geometry, unsigned(meshes_.size()));
   rtcReleaseGeometry(geometry);
   const Bounds box = bounds(mesh);
   const float offset = float(length(box.high - box.low) * double(kRayOffsetOfSize));
-  meshes_.push_back({std::move(vertices), std::move(moved), indices, mesh.normals.empty(), offset});
+  meshes_.push_back(
+      {std::move(vertices), std::move(moved), std::move(cutout), indices, mesh.normals.empty(), offset});
   largest_offset_ = std::max(largest_offset_, offset);
 }
 

@@ -108,7 +108,7 @@ class RayScene {
   struct Handles;
   struct Vertex;
   struct MeshView;
-  void attach(const Mesh& mesh, RayBuild build, const MeshMotion& motion);
+  void attach(const World& world, std::size_t index, RayBuild build, const MeshMotion& motion);
 
   std::unique_ptr<Handles> handles_;
   std::vector<MeshView> meshes_;

@@ -152,6 +152,8 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
   world.boxes.resize(count);
   world.measures.resize(count);
   loaded = 0;
+  if (std::ranges::any_of(scene.shapes, [](const Shape& shape) { return shape.opacity.has_value(); }))
+    for (const Shape& shape : scene.shapes) world.opacities.push_back(shape.opacity);
   if (count == 0) return world;
   Bounds all;
   for (std::size_t i = 0; i < count; ++i) {

@@ -20,8 +20,9 @@ namespace opaline {
 struct World {
   std::vector<Mesh> meshes;
   std::vector<MeshReport> reports;
-  std::vector<Bounds> boxes;           ///< one per mesh, in the scene, mm
-  std::vector<MeshMeasures> measures;  ///< one per mesh, in this space
+  std::vector<Bounds> boxes;                      ///< one per mesh, in the scene, mm
+  std::vector<MeshMeasures> measures;             ///< one per mesh, in this space
+  std::vector<std::optional<Texture>> opacities;  ///< Shape::opacity, one per mesh; empty: all are opaque
   /// Centre of the scene, rounded to a multiple of a step. The step is a power of two between 1/8 and 1/4 of
   /// the diagonal, so a small movement of one object usually keeps the origin, and the bits of the others.
   Vec3d origin{};       ///< mm

@@ -168,6 +168,11 @@ void read_surface(const ObjectReader& reader, ShapeContext& context, Shape& shap
   if (const auto map = reader.find("bump_map")) shape.bump_map = read_bump_map(*map, context.mm_per_unit);
   if (const auto map = reader.find("displacement"))
     shape.displacement = read_displacement(*map, context.mm_per_unit);
+  if (const auto map = reader.find("opacity")) {
+    if (shape.medium) map->fail_key("cannot be combined with 'medium'", "an opaque shape");
+    if (reader.find("emission")) map->fail_key("cannot be combined with 'emission'", "one of them");
+    shape.opacity = read_opacity(*map);
+  }
   read_gloss(reader, shape);
   for (const std::string_view name : {"fuzz_weight", "fuzz_color", "fuzz_roughness"})
     if (const auto key = reader.find(name); key && shape.medium)

@@ -219,6 +219,12 @@ Texture read_displacement(const Value& value, double mm_per_unit) {
   return texture;
 }
 
+Texture read_opacity(const Value& value) {
+  Texture texture = read_texture(value, TexturePart::number);
+  if (is_solid(texture)) value.fail("needs an image mapped by UVs", "an image without 'triplanar'");
+  return texture;
+}
+
 std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit) {
   Texture texture = read_texture(value, TexturePart::number);
   if (texture.source->constant()) return {};

@@ -174,6 +174,10 @@ std::vector<KeyInfo> shape_rows() {
                    "height map that moves the vertices along their smooth normals, after `subdivide` and "
                    "`transform`; the normals follow. Heights are the texture times `scale`, in scene units; "
                    "the mesh limits the detail")),
+      textured(row("shape", "opacity", object, "", kFiniteNumber, "none",
+                   "opaque shapes that do not emit: texture with UVs; the surface has holes where it is "
+                   "below 0.5, such as around "
+                   "leaves. Usually with `\"channel\": \"a\"`; `scale` moves the threshold")),
       row("shape", "group", text, "", kFiniteNumber, "alone",
           "translucent shapes of one group are one body, with one medium; light does not scatter from one "
           "body to another"),

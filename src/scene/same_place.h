@@ -6,9 +6,10 @@
 
 namespace opaline {
 
-/// True if both shapes have the same vertices.
+/// True if both shapes have the same vertices and holes.
 inline bool in_same_place(const Shape& a, const Shape& b) {
-  return a.source == b.source && a.to_world == b.to_world && a.displacement == b.displacement;
+  return a.source == b.source && a.to_world == b.to_world && a.displacement == b.displacement &&
+         a.opacity == b.opacity;
 }
 
 }  // namespace opaline

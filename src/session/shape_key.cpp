@@ -77,6 +77,7 @@ StageKey shape_key(const Shape& shape, const StageKey& source) {
   key.add(shape.name);  // used in messages
   if (shape.displacement)
     add_to_key(key.add(std::string("displacement")).add(solid_to_world(shape)), *shape.displacement);
+  if (shape.opacity) add_to_key(key.add(std::string("opacity")), *shape.opacity);
   return key.key();
 }
 

@@ -29,9 +29,10 @@ std::string embree_version() {
   return RTC_VERSION_STRING;
 }
 
-MeshKeys mesh_keys(const Mesh& mesh) {
+MeshKeys mesh_keys(const Mesh& mesh, const std::optional<Texture>& opacity) {
   KeyBuilder shape("mesh", 1);
   shape.add_array(std::span(mesh.positions)).add_array(std::span(mesh.triangles));
+  if (opacity) add_to_key(shape.add(std::string("opacity")).add_array(std::span(mesh.uvs)), *opacity);
   MeshKeys keys{shape.key(), {}, {}, 0};
   keys.all = KeyBuilder("mesh with normals", 1).add(keys.shape).add_array(std::span(mesh.normals)).key();
   const Bounds box = bounds(mesh);
@@ -42,7 +43,8 @@ MeshKeys mesh_keys(const Mesh& mesh) {
 
 std::vector<MeshKeys> mesh_keys(const World& world) {
   std::vector<MeshKeys> keys;
-  for (const Mesh& mesh : world.meshes) keys.push_back(mesh_keys(mesh));
+  for (std::size_t i = 0; i < world.meshes.size(); ++i)
+    keys.push_back(mesh_keys(world.meshes[i], world.opacities.empty() ? std::nullopt : world.opacities[i]));
   return keys;
 }
 

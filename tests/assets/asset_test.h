@@ -39,6 +39,7 @@ inline std::string base64(const std::string& bytes) {
 struct Asset {
   Json json{{"asset", {{"version", "2.0"}}}};
   std::string buffer;
+  std::size_t fallback_bytes = 0;  ///< of a second buffer without data, for compressed buffer views
 
   /// Appends an accessor over the numbers, and its view; returns its index.
   template <class T>
@@ -80,16 +81,14 @@ struct Asset {
   }
 
   std::string gltf(const std::string& uri) const {
-    Json whole = json;
-    whole["buffers"] = Json::array({{{"byteLength", buffer.size()}, {"uri", uri}}});
+    Json whole = with_buffers();
+    whole["buffers"][0]["uri"] = uri;
     return whole.dump();
   }
   std::string gltf() const { return gltf("data:application/octet-stream;base64," + base64(buffer)); }
 
   std::string glb() const {
-    Json whole = json;
-    whole["buffers"] = Json::array({{{"byteLength", buffer.size()}}});
-    std::string text = whole.dump(), bytes = buffer;
+    std::string text = with_buffers().dump(), bytes = buffer;
     text.resize((text.size() + 3) / 4 * 4, ' ');
     bytes.resize((bytes.size() + 3) / 4 * 4);
     std::string file = "glTF";
@@ -103,6 +102,16 @@ struct Asset {
     number(bytes.size());
     file += std::string("BIN\0", 4) + bytes;
     return file;
+  }
+
+ private:
+  Json with_buffers() const {
+    Json whole = json;
+    whole["buffers"] = Json::array({{{"byteLength", buffer.size()}}});
+    if (fallback_bytes > 0)
+      whole["buffers"].push_back({{"byteLength", fallback_bytes},
+                                  {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
+    return whole;
   }
 };
 

@@ -243,6 +243,42 @@ TEST(GltfAnimations, BrokenOnesAreWarnings) {
   expect_near(middle_at(second, 13), {0, 4, 0});
 }
 
+// Claim: an asset is imported with the animation of a name or number; others are listed. One that is not there, or moves
+// nothing, is an error, as is any in a format without animations. Fails if: the first one moves the scene.
+TEST(GltfAnimations, ImportsTakeTheChosenOne) {
+  Asset asset = cube_asset();
+  add_channel(asset, 0, "translation", {0, 1}, {0, 0, 0, 1, 0, 0});
+  add_channel(asset, 0, "translation", {0, 1}, {0, 0, 0, 0, 8, 0}, "LINEAR", 1);
+  asset.json["animations"].push_back(
+      {{"name", "rest"}, {"channels", Json::array()}, {"samplers", Json::array()}});
+  const ScratchFolder folder;
+  put_bytes(folder.file("a.glb"), asset.glb());
+  const auto import = [&](const std::string& animation, const char* file = "a.glb") {
+    return import_asset(folder.file(file), file, {}, animation);
+  };
+  for (const char* run : {"run", "1"}) {
+    const ImportedAsset chosen = import(run);
+    EXPECT_TRUE(has(chosen.translated, "animation 'run' -> frames 1 to 25"));
+    EXPECT_TRUE(has(chosen.not_carried, "animation 'walk': not imported"));
+    const Scene scene = parse_scene(chosen.text, folder.file("s.json"), {}, 13);
+    double top = -1e300;
+    for (const Vec3d& p : make_mesh(scene.shapes.at(0)).mesh.positions) top = std::max(top, p.y);
+    EXPECT_NEAR(top, 5000, 1e-3);
+  }
+  const auto mistake = [&](const std::string& animation, const char* file = "a.glb") -> std::string {
+    try {
+      import(animation, file);
+    } catch (const Error& failure) {
+      return failure.what();
+    }
+    return {};
+  };
+  EXPECT_NE(mistake("rum").find("a.glb: has no such animation (did you mean 'run'?)"), std::string::npos);
+  EXPECT_NE(mistake("rest").find("moves nothing"), std::string::npos);
+  put_bytes(folder.file("b.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_NE(mistake("run", "b.off").find("b.off: has no animations"), std::string::npos);
+}
+
 // Claim: a scene's "animation_time" and "animation" choose a pose by name or index; the file and the mistake are named.
 // Fails if: the first animation is taken, or a mesh without animations is rendered as it is.
 TEST(GltfAnimations, ScenesChooseThePose) {

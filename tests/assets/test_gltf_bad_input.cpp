@@ -85,8 +85,8 @@ TEST(GltfBadInput, IsNamed) {
        "test.gltf: nodes[0].rotation is not a rotation"},
       {[](Json& j) { j["scenes"][0]["nodes"] = {4}; }, "test.gltf: scenes[0].nodes refers to nothing"},
       {[](Json& j) { j["scene"] = 2; }, "test.gltf: scene refers to nothing (expected 0 to 0, got 2)"},
-      {[](Json& j) { j["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
-       "test.gltf: its meshes are compressed by KHR_draco_mesh_compression, which is not supported"},
+      {[](Json& j) { j["extensionsRequired"] = {"KHR_meshopt_compression"}; },
+       "test.gltf: its meshes are compressed by KHR_meshopt_compression, which is not supported"},
       {[](Json& j) {
          j["materials"] =
              Json::array({{{"extensions", {{"KHR_materials_scatter", {{"scatterAnisotropy", "x"}}}}}}});

@@ -46,6 +46,47 @@ double left_texel(const TextureFile& texture) {
   return double(texture.at({.25f, .5f, {}, {}})[0]);
 }
 
+/// A PNG of 4 x 2 texels whose alpha is 1 in its left half and 0 in its right one.
+constexpr const char* kHalfClear =
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAQAAAACCAYAAAB/"
+    "qH1jAAAAFElEQVR42mM4kWL0H4oZQJgBXQAAEfsO7agUvlMAAA"
+    "AASUVORK5CYII=";
+
+// Claim: alphaMode MASK is the opacity of an opaque shape, with alphaFactor and alphaCutoff in its scale: a hole where
+// factor * alpha < cutoff; BLEND is one of half, with a warning. A texture without alpha, an emitting surface and a mode of
+// OPAQUE have no holes. Source: glTF 2.0, alphaMode. Fails if: the cutoff is lost, or colours are taken for opacity.
+TEST(GltfTextures, AlphaMasksAreOpacity) {
+  const std::string opaque = "data:image/png;base64," + base64(png_of(128));
+  const auto import_of = [](const Json& material, const std::string& image = kHalfClear) {
+    return imported(textured_triangle(material, {{"uri", image}}));
+  };
+  const auto shape_of = [](const ImportedAsset& import) {
+    return Json::parse(import.text, nullptr, true, true).at("shapes").at(0);
+  };
+  Json material = colored();
+  material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, .8};
+  EXPECT_FALSE(shape_of(import_of(material)).contains("opacity"));
+  material["alphaMode"] = "MASK";
+  material["alphaCutoff"] = .25;
+  const Json mask = shape_of(import_of(material)).at("opacity");
+  EXPECT_EQ(mask.at("channel"), "a");
+  EXPECT_NEAR(mask.at("scale").get<double>(), 1.6, 1e-12);
+  EXPECT_FALSE(shape_of(import_of(material, opaque)).contains("opacity"));
+  EXPECT_TRUE(has(import_of(material, opaque).warnings, "without a texture of alpha has no holes"));
+  material["alphaMode"] = "BLEND";
+  const ImportedAsset blended = import_of(material);
+  EXPECT_NEAR(shape_of(blended).at("opacity").at("scale").get<double>(), .8, 1e-12);
+  EXPECT_TRUE(has(blended.warnings, "partial transparency is not supported"));
+  material["emissiveFactor"] = {1, 1, 1};
+  EXPECT_FALSE(shape_of(import_of(material)).contains("opacity"));
+  material.erase("emissiveFactor");
+  const Scene scene = scene_of(textured_triangle(material, {{"uri", kHalfClear}}).gltf());
+  ASSERT_TRUE(scene.shapes.at(0).opacity);
+  const Texture& opacity = *scene.shapes.at(0).opacity;
+  EXPECT_EQ(opacity.source->image()->at({.25f, .5f, {}, {}})[opacity.channel], 1);
+  EXPECT_EQ(opacity.source->image()->at({.75f, .5f, {}, {}})[opacity.channel], 0);
+}
+
 // Claim: images are found in the asset, in its text, and beside it under an encoded name; colours are sRGB. No file is
 // left. Fails if one of the three is not, or bytes go through a file.
 TEST(GltfTextures, AreFoundWhereverTheyAre) {

@@ -133,11 +133,24 @@ TEST(MtlMaterials, TransparencyAndOtherTexturesAreWarnings) {
   EXPECT_EQ(
       warnings_of("newmtl red\nmap_Pr p.png\nmap_Ks q.png\n"),
       "a.mtl:2: map_Pr and map_Ks of material 'red' are ignored: the supported textures are map_Kd, map_Ke, "
-      "bump and norm\n");
+      "map_d, bump and norm\n");
   EXPECT_EQ(warnings_of("newmtl red\nTr 0.5\n"),
             "a.mtl:2: Tr of material 'red' is ignored: transparency is not supported; the surface renders "
             "opaque\n");
   EXPECT_EQ(warnings_of("newmtl red\nKe 0 0 0\nd 1\nTr 0\nTf 1 1 1\nnewmtl unused\nKe 1\nd 0.5\n"), "");
+}
+
+// Claim: map_d is the opacity of the shape, by the alpha of its image, or red where it has none; beside Ke it is not.
+// Source: Wavefront, MTL material format 4.2. Fails if: it is a warning.
+TEST(MtlMaterials, MapDIsOpacity) {
+  const auto shape_of = [](const std::string& statements) {
+    const MtlFolder folder("newmtl red\nKd 0.2\n" + statements);
+    test::put_png(folder.file("p.png"), 4, 4, test::Bytes{255, 255, 255});
+    return nlohmann::json::parse(folder.import().text, nullptr, true, true).at("shapes").at(0);
+  };
+  EXPECT_EQ(shape_of("map_d p.png\n").at("opacity").at("texture"), "p.png");
+  EXPECT_FALSE(shape_of("map_d p.png\n").at("opacity").contains("channel"));
+  EXPECT_FALSE(shape_of("map_d p.png\nKe 1\n").contains("opacity"));
 }
 
 // Claim: Ke is the emission of the shape, above 1 too, one number for all three; map_Ke is its texture times Ke, alone where Ke

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A GLB or glTF asset, from its bytes to a scene and its triangles.
-#include "../assets/asset_test.h"
+#include "../assets/compressed_cube.h"
 #include "fuzz_target.h"
 
 namespace opaline::fuzz {
@@ -46,7 +46,13 @@ std::vector<std::string> seeds() {
                                                                {{"type", "directional"}}};
   asset.root(asset.node(
       {{"camera", 0}, {"scale", {1, 2, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
-  return {asset.gltf(), asset.glb(), posed_cubes().gltf(), posed_cubes().glb()};
+  return {asset.gltf(),
+          asset.glb(),
+          posed_cubes().gltf(),
+          posed_cubes().glb(),
+          asset_test::meshopt_cube().glb(),
+          asset_test::draco_cube(0).glb(),
+          asset_test::draco_cube(10).glb()};
 }
 
 std::vector<std::string> words() {
@@ -56,6 +62,9 @@ std::vector<std::string> words() {
           "\"count\":",
           "\"indices\":",
           "\"mode\":5",
+          "\"mode\":\"INDICES\"",
+          "\"filter\":\"QUATERNION\"",
+          "\"KHR_draco_mesh_compression\":{",
           "\"componentType\":5121",
           "\"SCALAR\"",
           "\"children\":[",
