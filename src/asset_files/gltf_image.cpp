@@ -38,7 +38,7 @@ GltfImage gltf_image(const GltfModel& gltf, std::size_t index) {
   const std::string uri = image.text("uri");
   if (uri.empty()) return {{}, view_bytes(gltf, image)};
   std::optional<std::string> data = data_of_uri(uri);
-  if (!data) image.fail("uri", "cannot be read", "a file, or a PNG or JPEG in base64");
+  if (!data) image.fail("uri", "cannot be read", "a file, or an image in base64");
   return {{}, *std::move(data)};
 }
 

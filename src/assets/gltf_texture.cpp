@@ -16,20 +16,21 @@ namespace {
 /// The image of a texture.
 std::size_t image_of(const GltfModel& gltf, std::size_t texture) {
   const GltfRecord record = gltf.record("textures", texture);
-  const std::uint32_t image = record.index("source");
+  const std::uint32_t web = record.record("extensions").record("EXT_texture_webp").index("source"),
+                      image = web != kNoRecord ? web : record.index("source");
   if (image == kNoRecord)
-    fail_at(gltf.path, record.place(), "has no supported image", "a source, PNG or JPEG");
+    fail_at(gltf.path, record.place(), "has no supported image", "a source, PNG, JPEG or WebP");
   return image;
 }
 
-/// error unless present, in one of glTF's own formats, and undamaged
+/// error unless present, in a format of glTF or its extensions, and undamaged
 std::shared_ptr<const TextureFile> opened_image(const GltfModel& gltf, std::size_t index, bool is_color) {
   const GltfImage image = gltf_image(gltf, index);
   try {
     std::string start = image.bytes.substr(0, 8);
     if (!image.path.empty()) start = InputFile(image.path).read(0, 8);
-    if (!start.starts_with("\x89PNG") && !start.starts_with("\xff\xd8\xff"))
-      throw bad_file(gltf.path, "neither PNG nor JPEG");
+    if (!start.starts_with("\x89PNG") && !start.starts_with("\xff\xd8\xff") && !start.starts_with("RIFF"))
+      throw bad_file(gltf.path, "not a PNG, JPEG or WebP");
     return TextureFile::open_as(
         image.path.empty() ? gltf.path + std::string(kGltfImageWord) + std::to_string(index) : image.path,
         is_color);

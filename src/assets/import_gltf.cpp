@@ -333,9 +333,10 @@ class GltfImporter {
   }
 
   void tell_losses() {
-    constexpr std::array<std::string_view, 6> read{"KHR_lights_punctual",     "KHR_mesh_quantization",
-                                                   "KHR_texture_transform",   "EXT_mesh_gpu_instancing",
-                                                   "EXT_meshopt_compression", "KHR_draco_mesh_compression"};
+    constexpr std::array<std::string_view, 7> read{"KHR_lights_punctual",       "KHR_mesh_quantization",
+                                                   "EXT_texture_webp",          "KHR_texture_transform",
+                                                   "EXT_mesh_gpu_instancing",   "EXT_meshopt_compression",
+                                                   "KHR_draco_mesh_compression"};
     const std::set<std::string> required(gltf_.extensions_required.begin(), gltf_.extensions_required.end());
     std::set<std::string> used = required;
     used.insert(gltf_.extensions_used.begin(), gltf_.extensions_used.end());

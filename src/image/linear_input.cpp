@@ -69,7 +69,8 @@ void LinearInput::forget_source(const std::string& name) {
 }
 
 bool LinearInput::is_held(const OpenPicture& picture, const TexelLayout& layout) {
-  return layout.is_windowed || picture.format == "png" || picture.format == "jpeg" || picture.format == "hdr";
+  return layout.is_windowed || picture.format == "png" || picture.format == "jpeg" ||
+         picture.format == "hdr" || picture.format == "webp";
 }
 
 bool LinearInput::open(const std::string& name, OIIO::ImageSpec& spec) {

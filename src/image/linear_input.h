@@ -22,7 +22,7 @@
 namespace opaline {
 
 /// The formats of textures.
-inline constexpr std::string_view kTextureFormats[] = {"exr", "hdr", "png", "jpeg", "tiff"};
+inline constexpr std::string_view kTextureFormats[] = {"exr", "hdr", "png", "jpeg", "tiff", "webp"};
 
 /// First failure to read a source. OpenImageIO 2.5 aborts if a thread looks up an image after reading it has failed, so inputs
 /// return zeros, and the texture reports the failure.

@@ -13,8 +13,10 @@ namespace opaline {
 namespace {
 
 /// Largest ratio of floats in memory to bytes in the file: bounds the most compressible images of each format
-/// (constant DWA and ZIP EXRs, one-bit palette PNGs, progressive JPEGs of empty blocks) with a margin.
+/// (constant DWA and ZIP EXRs, one-bit palette PNGs, progressive JPEGs of empty blocks) with a margin. A constant WebP has
+/// no bits per pixel.
 double densest(const OIIO::ImageSpec& spec, std::string_view format) {
+  if (format == "webp") return 1 << 24;
   if (format == "png") return 131072;
   if (format == "jpeg" || format == "tiff") return 16384;
   return spec.get_string_attribute("compression").substr(0, 3) == "dwa" ? 32768 : 2048;
@@ -30,6 +32,7 @@ std::string one_line(std::string message) {
 /// in noise.
 std::string_view format_of(const PictureBytes& bytes) {
   const std::string begin = bytes.read(0, 8);
+  if (begin.starts_with("RIFF") && bytes.read(8, 4) == "WEBP") return "webp";
   const std::string_view start = begin;
   if (start.starts_with("\x76\x2f\x31\x01")) return "exr";
   if (start == "\x89PNG\r\n\x1a\n") return "png";
@@ -111,7 +114,7 @@ OpenPicture open_picture(const PictureSource& source, std::span<const std::strin
     picture.memory =
         std::make_unique<OIIO::Filesystem::IOMemReader>(source.bytes.data(), source.bytes.size());
     if (!picture.input->set_ioproxy(picture.memory.get()))
-      throw bad_file(source.path, "cannot be read from within an asset", "a PNG or JPEG image",
+      throw bad_file(source.path, "cannot be read from within an asset", "a PNG, JPEG or WebP image",
                      std::string(picture.format));
   }
   if (!picture.input || !picture.input->open(source.path, spec, config))

@@ -17,7 +17,7 @@ namespace opaline {
 
 /// An image opened by OpenImageIO, for reading without premultiplied alpha.
 struct OpenPicture {
-  std::string_view format;  ///< "exr", "hdr", "png", "jpeg" or "tiff"
+  std::string_view format;  ///< "exr", "hdr", "png", "jpeg", "tiff" or "webp"
   std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
   OIIO::ImageInput::unique_ptr input;  ///< destroyed first
 };

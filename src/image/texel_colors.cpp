@@ -58,9 +58,12 @@ std::optional<ColorMatrix> matrix_to_rec709(const OIIO::ImageSpec& file, const s
 TexelColors::TexelColors(const OIIO::ImageSpec& file, std::string_view format, const TexelLayout& layout,
                          TextureEncoding encoding, const std::string& path)
     : is_srgb(encoding.space == ColorSpace::srgb) {
+  const bool has_associated_alpha =
+      layout.places[3] >= 0 && file.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+  // OpenImageIO multiplies a WebP's numbers by alpha, whatever it is asked for.
+  is_premultiplied = has_associated_alpha && format == "webp";
   if (encoding.content == TextureContent::data) return;
-  is_premultiplied = (format == "exr" || format == "tiff") && layout.places[3] >= 0 &&
-                     file.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+  is_premultiplied = is_premultiplied || (has_associated_alpha && (format == "exr" || format == "tiff"));
   const auto& [red, green, blue, alpha] = layout.places;
   if (std::min({red, green, blue}) >= 0 && red != green) to_rec709 = matrix_to_rec709(file, path);
 }

@@ -40,7 +40,7 @@ class CachedPicture;
 /// rows counted upwards. Texels are read on demand at the appropriate size, in a cache of limited size.
 class TextureFile final : public TextureSource {
  public:
-  /// in    path: EXR, HDR, PNG, JPEG or TIFF, a name with "<UDIM>", or "asset.glb#image/3" by its index in
+  /// in    path: EXR, HDR, PNG, JPEG, TIFF or WebP, a name with "<UDIM>", or "asset.glb#image/3" by its index in
   ///       the asset; space: not automatic
   /// out   the same object while the file is unchanged and in use; the image is the display window, 0 outside
   ///       the data window

@@ -250,7 +250,8 @@ std::vector<KeyInfo> texture_rows() {
   using enum ValueType;
   return {
       row("texture", "texture", file, "", kFiniteNumber, "",
-          "EXR, HDR, PNG, JPEG or TIFF, relative to the scene file's folder. `<UDIM>` in the name stands for "
+          "EXR, HDR, PNG, JPEG, TIFF or WebP, relative to the scene file's folder. `<UDIM>` in the name "
+          "stands for "
           "1001 + column + 10 x row. `asset.glb#image/0` is an image of an asset. Colours are converted from "
           "the chromaticities of an EXR to Rec.709; premultiplied colours are divided by alpha"),
       row("texture", "noise", choice, "", kFiniteNumber, "",

@@ -52,6 +52,18 @@ constexpr const char* kHalfClear =
     "qH1jAAAAFElEQVR42mM4kWL0H4oZQJgBXQAAEfsO7agUvlMAAA"
     "AASUVORK5CYII=";
 
+// Claim: EXT_texture_webp's image is used, from within the asset. The bytes are `cwebp -lossless` of one texel of (200, 100, 50).
+TEST(GltfTextures, ImagesMayBeWebP) {
+  const std::string webp = "data:image/webp;base64,UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQsiJXpv+BiOh/AAA=";
+  Asset asset = textured_triangle(colored(), {{"uri", webp}});
+  asset.json["textures"] = Json::array({{{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}}});
+  asset.json["extensionsRequired"] = asset.json["extensionsUsed"] = {"EXT_texture_webp"};
+  const ImportedAsset import = imported(asset);
+  EXPECT_TRUE(import.warnings.empty()) << import.warnings.front();
+  ASSERT_EQ(import.textures.size(), 1u);
+  EXPECT_NEAR(left_texel(*import.textures.front()), test::linear_of_byte(200), 1e-3);
+}
+
 // Claim: alphaMode MASK is the opacity of an opaque shape, with alphaFactor and alphaCutoff in its scale: a hole where
 // factor * alpha < cutoff; BLEND is one of half, with a warning. A texture without alpha, an emitting surface and a mode of
 // OPAQUE have no holes. Source: glTF 2.0, alphaMode. Fails if: the cutoff is lost, or colours are taken for opacity.

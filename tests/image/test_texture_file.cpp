@@ -60,6 +60,32 @@ TEST(TextureFile, ReadsJpegAndTiff) {
   }
 }
 
+// Claim: a WebP's colours are those of its encoder, although OpenImageIO multiplies them by alpha; its alpha is linear. The
+// bytes are `cwebp -lossless -exact` of 4 x 2 texels of (200, 100, 50) with alphas of 255, 128, 20 and 0. Tolerance: half a byte
+// over alpha. A cut file is refused. Fails if: colours darken where alpha is below 1.
+TEST(TextureFile, ReadsWebP) {
+  const std::string webp(
+      "\x52\x49\x46\x46\x26\x00\x00\x00\x57\x45\x42\x50\x56\x50\x38\x4c\x1a\x00\x00\x00\x2f\x03\x40\x00\x10"
+      "\x1f"
+      "\x30\x64\x83\x3c\x32\x02\x01\x42\x84\x4c\x0f\xd6\xe3\x40\x84\xd1\x8d\x88\xfe\x07",
+      46);
+  const ScratchFolder folder;
+  put_bytes(folder.file("p.webp"), webp);
+  const auto texture = TextureFile::open_as(folder.file("p.webp"), true),
+             data = TextureFile::open_as(folder.file("p.webp"), false);
+  const double alphas[] = {255, 128, 20};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto texel = texture->at(at((double(i) + .5) / 4, .5));
+    EXPECT_NEAR(double(texel[3]), alphas[i] / 255, 1e-3);
+    const double rounding = .5 * 255 / alphas[i];
+    EXPECT_GE(double(texel[0]), linear_of_byte(200 - rounding) - 1e-3) << i;
+    EXPECT_LE(double(texel[0]), linear_of_byte(200 + rounding) + 1e-3) << i;
+    EXPECT_NEAR(double(data->at(at((double(i) + .5) / 4, .5))[1]) * 255, 100, rounding + .1) << i;
+  }
+  put_bytes(folder.file("cut.webp"), webp.substr(0, webp.size() - 12));
+  EXPECT_THROW(TextureFile::open(folder.file("cut.webp"), ColorSpace::srgb), Error);
+}
+
 // Claim: pictures of all counts of channels give red, green, blue and alpha, and say which of them they have; channels go by
 // their names. Tolerance: a byte, 1 / 255; JPEG's 2 of 255. Fails if: channels go by their places (grey and alpha become cyan),
 // alpha is linearized, or a missing channel is taken for 0 or 1 without a word.
