@@ -14,10 +14,9 @@ namespace {
 
 /// Largest ratio of floats in memory to bytes in the file: bounds the most compressible images of each format
 /// (constant DWA and ZIP EXRs, one-bit palette PNGs, progressive JPEGs of empty blocks) with a margin. A constant WebP has
-/// no bits per pixel.
+/// no bits per pixel, and is refused if large.
 double densest(const OIIO::ImageSpec& spec, std::string_view format) {
-  if (format == "webp") return 1 << 24;
-  if (format == "png") return 131072;
+  if (format == "png" || format == "webp") return 131072;
   if (format == "jpeg" || format == "tiff") return 16384;
   return spec.get_string_attribute("compression").substr(0, 3) == "dwa" ? 32768 : 2048;
 }
@@ -76,6 +75,23 @@ void check_color_types(const std::string& path, const OIIO::ImageSpec& spec) {
   }
 }
 
+/// Checks the size that a WebP's first chunk claims (RFC 9649): OpenImageIO allocates it on opening.
+void check_webp_size(const PictureBytes& bytes, const std::string& path) {
+  const std::string start = bytes.read(0, 30);
+  if (start.size() < 30) throw bad_file(path, "the image is truncated");
+  const auto number = [&](std::size_t at, std::size_t count) {
+    unsigned value = 0;
+    for (std::size_t i = count; i-- > 0;) value = value << 8 | std::uint8_t(start[at + i]);
+    return int(value);
+  };
+  constexpr int k14Bits = 0x3fff;
+  const std::string kind = start.substr(12, 4);
+  int width = number(26, 2) & k14Bits, height = number(28, 2) & k14Bits;  // VP8
+  if (kind == "VP8X") width = number(24, 3) + 1, height = number(27, 3) + 1;
+  if (kind == "VP8L") width = (number(21, 2) & k14Bits) + 1, height = (number(22, 3) >> 6 & k14Bits) + 1;
+  check_size(path, OIIO::ImageSpec(width, height, 4), "webp", bytes.size());
+}
+
 // libjpeg accepts a missing end, and fills missing pixels with grey.
 void check_jpeg_end(const PictureBytes& bytes, const std::string& path) {
   constexpr std::uintmax_t kTail = 1 << 16;  // programs append notes of their own
@@ -107,6 +123,7 @@ OpenPicture open_picture(const PictureSource& source, std::span<const std::strin
   OpenPicture picture{format_of(bytes), {}, {}};
   if (std::ranges::find(formats, picture.format) == formats.end())
     throw bad_file(source.path, "not a readable image", readable);
+  if (picture.format == "webp") check_webp_size(bytes, source.path);
   picture.input = OIIO::ImageInput::create(picture.format);
   OIIO::ImageSpec spec, config;
   config.attribute("oiio:UnassociatedAlpha", 1);
