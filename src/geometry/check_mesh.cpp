@@ -226,9 +226,8 @@ class MeshChecker {
   }
 
   void fill(const EdgeTable& edges) {
-    const std::vector<Edge> open = open_edges(edges);
     const HoleFilling filling =
-        fill_holes(source_.positions, all_sites(), open, settings_.fill_holes, settings_.has_inside);
+        fill_holes(source_.positions, all_sites(), edges, settings_.fill_holes, settings_.has_inside);
     if (filling.filled > 0) warn_of_filling(filling);
     source_.triangles.insert(source_.triangles.end(), filling.triangles.begin(), filling.triangles.end());
     if (!origins_.empty()) origins_.resize(source_.triangles.size(), kNew);

@@ -39,18 +39,52 @@ struct Rim {
   double area() const { return std::min(length * length / (4 * std::numbers::pi), fan); }
 };
 
+/// The edges where half-edges end.
+struct Borders {
+  std::vector<Edge> open;       ///< of one triangle, ascending
+  std::vector<char> is_beside;  ///< one per vertex: at such an edge
+};
+
+/// Half-edges end at open edges, and where orient_polygon_soup cuts: along edges of more than two triangles, or of two with
+/// opposite winding.
+Borders borders_of(const std::vector<Triangle>& triangles, const EdgeTable& edges, std::size_t vertices) {
+  Borders borders{{}, std::vector<char>(vertices)};
+  const auto ascends = [&](std::uint32_t triangle, std::uint32_t low, std::uint32_t high) {
+    const auto& [a, b, c] = triangles[triangle];
+    return (a == low && b == high) || (b == low && c == high) || (c == low && a == high);
+  };
+  edges.for_each([&](std::uint32_t low, std::uint32_t high, std::span<const std::uint32_t> corners) {
+    if (corners.size() == 1) borders.open.push_back({low, high});
+    if (corners.size() == 2 && ascends(corners[0] / 3, low, high) != ascends(corners[1] / 3, low, high))
+      return;
+    borders.is_beside[low] = borders.is_beside[high] = true;
+  });
+  return borders;
+}
+
+/// Triangles with a vertex at a border, in their order. Holes have all their neighbours there, and where others are missing
+/// no vertex is at a border.
+std::vector<Triangle> triangles_beside(const Borders& borders, const std::vector<Triangle>& triangles) {
+  std::vector<Triangle> beside;
+  std::ranges::copy_if(triangles, std::back_inserter(beside), [&](const Triangle& triangle) {
+    return std::ranges::any_of(triangle, [&](std::uint32_t v) { return borders.is_beside[v] != 0; });
+  });
+  return beside;
+}
+
 class HoleFiller {
  public:
-  HoleFiller(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-             const std::vector<Edge>& open_edges, bool has_inside)
-      : positions_(positions), open_edges_(open_edges), has_inside_(has_inside) {
-    build(triangles);
+  HoleFiller(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles, Borders borders,
+             bool has_inside)
+      : positions_(positions), borders_(std::move(borders)), has_inside_(has_inside) {
+    build(triangles_beside(borders_, triangles));
   }
 
   HoleFilling run(FillHoles which) {
     std::vector<Halfedge> borders;
     pmp::extract_boundary_cycles(mesh_, std::back_inserter(borders));
-    for (const Halfedge border : borders) fill(border);
+    for (const Halfedge border : borders)
+      if (borders_.is_beside[original(mesh_.from_vertex_handle(border))]) fill(border);
     if (which == FillHoles::if_small && !result_.unfilled.empty()) return {};
     return std::move(result_);
   }
@@ -101,7 +135,7 @@ class HoleFiller {
     for (const Halfedge h : CGAL::halfedges_around_face(border, mesh_)) {
       const auto [low, high] =
           std::minmax({original(mesh_.from_vertex_handle(h)), original(mesh_.to_vertex_handle(h))});
-      open &= std::binary_search(open_edges_.begin(), open_edges_.end(), Edge{low, high});
+      open &= std::ranges::binary_search(borders_.open, Edge{low, high});
       ++edges;
     }
     return open;
@@ -157,7 +191,7 @@ class HoleFiller {
   }
 
   const std::vector<Vec3d>& positions_;
-  const std::vector<Edge>& open_edges_;
+  Borders borders_;
   bool has_inside_;
   std::vector<std::uint32_t> original_;  // source vertex of each vertex of mesh_
   HalfedgeMesh mesh_;
@@ -191,8 +225,9 @@ bool has_small_holes(const std::vector<Vec3d>& positions, const std::vector<Tria
 }
 
 HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                       const std::vector<Edge>& open_edges, FillHoles which, bool has_inside) {
-  return HoleFiller(positions, triangles, open_edges, has_inside).run(which);
+                       const EdgeTable& edges, FillHoles which, bool has_inside) {
+  return HoleFiller(positions, triangles, borders_of(triangles, edges, positions.size()), has_inside)
+      .run(which);
 }
 
 }  // namespace opaline

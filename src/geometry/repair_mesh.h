@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/source_mesh.h"
+#include "geometry/topology.h"
 
 namespace opaline {
 
@@ -29,13 +30,13 @@ bool has_small_holes(const std::vector<Vec3d>& positions, const std::vector<Tria
                      const std::vector<Edge>& open_edges);
 
 /// Triangulates the holes of a mesh without new vertices.
-/// in    triangles: consistently wound, no duplicates, no vertex twice in a triangle; open_edges: the edges
-///       with one triangle, ascending; which: all or if_small; has_inside: fills borders along edges of three triangles or
-///       more, too, as the mesh must be closed
+/// in    triangles: consistently wound, no duplicates, no vertex twice in a triangle; edges: theirs, of any winding;
+///       which: all or if_small; has_inside: fills borders along edges of three triangles or more, too, as the mesh must be
+///       closed
 /// out   if_small: nothing, unless all holes can be filled
 /// from  Liepa 2003, by CGAL's triangulate_hole; holes of more than 500 edges only by the faster search over
 ///       a Delaunay triangulation
 HoleFilling fill_holes(const std::vector<Vec3d>& positions, const std::vector<Triangle>& triangles,
-                       const std::vector<Edge>& open_edges, FillHoles which, bool has_inside);
+                       const EdgeTable& edges, FillHoles which, bool has_inside);
 
 }  // namespace opaline
