@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 namespace opaline {
 namespace {
@@ -73,7 +74,47 @@ class AccessorReader {
     return numbers;
   }
 
+  /// Calls prepare(count), then use(numbers) with each element, without a list of all numbers where they are dense.
+  template <std::size_t kNumbers, class Prepare, class Use>
+  void for_each(std::string_view type, const Prepare& prepare, const Use& use) {
+    size_ = component_bytes(accessor_.component);
+    if (accessor_.sparse || accessor_.view == kNoRecord) {
+      const std::vector<double> numbers = run(type, kNumbers);
+      prepare(numbers.size() / kNumbers);
+      for (std::size_t i = 0; i < numbers.size(); i += kNumbers) use(numbers.data() + i);
+      return;
+    }
+    check_type(type);
+    const Elements elements = dense(kNumbers * size_);
+    prepare(elements.count);
+    switch (accessor_.component) {
+      case kGltfByte:
+        return visit<std::int8_t, kNumbers>(elements, use);
+      case kGltfUnsignedByte:
+        return visit<std::uint8_t, kNumbers>(elements, use);
+      case kGltfShort:
+        return visit<std::int16_t, kNumbers>(elements, use);
+      case kGltfUnsignedShort:
+        return visit<std::uint16_t, kNumbers>(elements, use);
+      case kGltfUnsignedInt:
+        return visit<std::uint32_t, kNumbers>(elements, use);
+      default:
+        return visit<float, kNumbers>(elements, use);
+    }
+  }
+
  private:
+  template <class T, std::size_t kNumbers, class Use>
+  void visit(const Elements& elements, const Use& use) const {
+    const bool is_normalized = accessor_.is_normalized;
+    std::array<double, kNumbers> numbers;
+    for (std::size_t i = 0; i < elements.count; ++i) {
+      const char* const bytes = elements.first + i * elements.stride;
+      for (std::size_t k = 0; k < kNumbers; ++k) numbers[k] = number<T>(bytes + k * sizeof(T), is_normalized);
+      use(numbers.data());
+    }
+  }
+
   [[noreturn]] void fail(const std::string& message, const std::string& expected,
                          const std::string& got) const {
     fail_at(gltf_.path, place_, message, expected, got);
@@ -145,10 +186,11 @@ class AccessorReader {
 /// make(numbers) returns an element, from its numbers.
 template <std::size_t kNumbers, class Make>
 auto read_elements(const GltfModel& gltf, std::uint32_t index, std::string_view type, const Make& make) {
-  const std::vector<double> numbers = AccessorReader(gltf, index).run(type, kNumbers);
-  std::vector<decltype(make(numbers.data()))> elements;
-  elements.reserve(numbers.size() / kNumbers);
-  for (std::size_t i = 0; i < numbers.size(); i += kNumbers) elements.push_back(make(numbers.data() + i));
+  std::vector<std::invoke_result_t<const Make&, const double*>> elements;
+  AccessorReader(gltf, index)
+      .template for_each<kNumbers>(
+          type, [&](std::size_t count) { elements.reserve(count); },
+          [&](const double* numbers) { elements.push_back(make(numbers)); });
   return elements;
 }
 

@@ -317,8 +317,11 @@ class GltfImporter {
             placed.is_moving ? motion_->at(double(i) / std::max(poses - 1, 1)) : GltfState{};
         const GltfPart part =
             read_gltf_part(gltf_, placed.part, MeshUvs::unread, placed.is_moving ? &state : nullptr);
+        std::vector<char> is_used(part.positions.size());
         for (const auto& triangle : part.triangles)
-          for (const std::uint32_t v : triangle) visit(transform_point(placed.to_world, part.positions[v]));
+          for (const std::uint32_t v : triangle) is_used[v] = 1;
+        for (std::size_t v = 0; v < is_used.size(); ++v)
+          if (is_used[v] != 0) visit(transform_point(placed.to_world, part.positions[v]));
       }
   }
 

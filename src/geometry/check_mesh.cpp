@@ -32,7 +32,7 @@ class MeshChecker {
     if (!recall()) {
       start_memory();
       merge_vertices();
-      drop_collapsed_and_duplicates();
+      drop_collapsed();
       mend_winding_and_holes();
       finish_memory();
     }
@@ -140,18 +140,22 @@ class MeshChecker {
     return dropped;
   }
 
-  void drop_collapsed_and_duplicates() {
+  void drop_collapsed() {
     report_.zero_area_dropped += drop_triangles([&](std::size_t t) {
       const auto [a, b, c] = sites(source_.triangles[t]);
       return a == b || b == c || c == a;
     });
-    const std::vector<bool> duplicate = find_duplicates(all_sites());
-    report_.duplicates_dropped = drop_triangles([&](std::size_t t) { return duplicate[t]; });
   }
 
   void mend_winding_and_holes() {
     std::vector<Triangle> triangles = all_sites();
     EdgeTable edges(triangles, source_.positions.size());
+    const std::vector<bool> duplicate = find_duplicates(triangles, edges);
+    report_.duplicates_dropped = drop_triangles([&](std::size_t t) { return duplicate[t]; });
+    if (report_.duplicates_dropped > 0) {
+      triangles = all_sites();
+      edges = EdgeTable(triangles, source_.positions.size());
+    }
     if (wants_filling(triangles, open_edges(edges))) {
       apply(find_winding(wound(), triangles, edges, false), false);
       fill(edges);

@@ -87,7 +87,8 @@ void quarter(std::vector<std::array<Value, 3>>& corners, const Mean& mean) {
 
 /// Triangles with fewer than three different corners would make curves of the edges beside them; so would doubles.
 void drop_collapsed_and_duplicates(SourceMesh& mesh) {
-  const std::vector<bool> duplicate = find_duplicates(mesh.triangles);
+  const std::vector<bool> duplicate =
+      find_duplicates(mesh.triangles, EdgeTable(mesh.triangles, mesh.positions.size()));
   std::size_t kept = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = mesh.triangles[t];

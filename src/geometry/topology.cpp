@@ -147,20 +147,21 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
   return weld_all(positions, {});
 }
 
-std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles) {
-  FirstEqual first(triangles.size());
+std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles, const EdgeTable& edges) {
   std::vector<bool> duplicate(triangles.size());
-  const auto sorted = [&](std::uint32_t t) {
-    Triangle key = triangles[t];
-    std::sort(key.begin(), key.end());
-    return key;
-  };
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const Triangle key = sorted(t);
-    const std::uint64_t hash = mix(mix(mix(0, key[0]), key[1]), key[2]);
-    duplicate[t] =
-        first.find_or_insert(t, hash, [&](std::uint32_t a, std::uint32_t) { return sorted(a) == key; }) != t;
-  }
+  std::vector<std::uint32_t> thirds;  // of an edge's triangles, in their order
+  edges.for_each([&](std::uint32_t, std::uint32_t high, std::span<const std::uint32_t> corners) {
+    if (corners.size() < 2) return;
+    thirds.clear();
+    for (const std::uint32_t corner : corners) {
+      const std::uint32_t third = triangles[corner / 3][(corner % 3 + 2) % 3];
+      thirds.push_back(third);
+    }
+    for (std::size_t i = 1; i < corners.size(); ++i)
+      if (thirds[i] > high && std::find(thirds.begin(), thirds.begin() + std::ptrdiff_t(i), thirds[i]) !=
+                                  thirds.begin() + std::ptrdiff_t(i))
+        duplicate[corners[i] / 3] = true;
+  });
   return duplicate;
 }
 

@@ -24,9 +24,6 @@ void join_seams(SourceMesh& mesh);
 /// True for a triangle without area: twice it is at most 1e-12 of the square of its longest side.
 bool is_sliver(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
-/// For each triangle, true if an earlier one has the same three vertices in any order.
-std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles);
-
 /// Edges of a triangle soup, each with its starting corners. Corner 3 t + k is the edge of triangle t from
 /// its vertex k to the next. Edges are in the order of (lower vertex, higher vertex), corners ascend.
 class EdgeTable {
@@ -55,5 +52,9 @@ class EdgeTable {
   std::vector<std::uint32_t> start_;  // by lower vertex, into entries_
   std::vector<Entry> entries_;
 };
+
+/// For each triangle, true if an earlier one has the same three vertices in any order.
+/// in    triangles: with three different vertices; edges: theirs
+std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles, const EdgeTable& edges);
 
 }  // namespace opaline
