@@ -41,7 +41,7 @@ struct Rim {
 
 /// The edges where half-edges end.
 struct Borders {
-  std::vector<Edge> open;       ///< of one triangle, ascending
+  std::vector<Edge> open;       ///< edges of one triangle, ascending
   std::vector<char> is_beside;  ///< one per vertex: at such an edge
 };
 

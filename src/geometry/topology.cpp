@@ -149,7 +149,7 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
 
 std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles, const EdgeTable& edges) {
   std::vector<bool> duplicate(triangles.size());
-  std::vector<std::uint32_t> thirds;  // of an edge's triangles, in their order
+  std::vector<std::uint32_t> thirds;  // third vertices of the triangles at an edge, in their order
   edges.for_each([&](std::uint32_t, std::uint32_t high, std::span<const std::uint32_t> corners) {
     if (corners.size() < 2) return;
     thirds.clear();
