@@ -39,6 +39,25 @@ struct PartsFolder : SceneFolder {
   Outcome part(const std::string& of, const std::string& output, const Words& more) const {
     return render(output, Words{"--part", of} + more);
   }
+  /// Ends a whole image's only part by Ctrl-C once it has stored passes.
+  /// in    stage: with passes
+  Outcome interrupted_part(const std::string& output, const Words& options, const std::string& stage) const {
+    const Words line = Words{"render", scene, "-o", file(output), "--log", "json", "--part", "1/1"} + options;
+    const auto stores_passes = [&](const Outcome& stopped) {
+      return contains(stopped.out, output + " stores the complete passes; resume with ");
+    };
+    Outcome stopped;
+    for (int delay = 0; delay < 20 && !stores_passes(stopped); ++delay) {
+      std::filesystem::remove(file(output));
+      Child child(line);
+      EXPECT_TRUE(child.prints(R"({"event":"progress","stage":")" + stage + '"'));
+      std::this_thread::sleep_for(std::chrono::milliseconds(5 * delay));
+      child.send(SIGINT);
+      stopped = child.wait(20);
+    }
+    EXPECT_TRUE(stores_passes(stopped)) << stopped.out;
+    return stopped;
+  }
   Outcome merge(const Words& parts, const Words& more = {}) const {
     Words words{"merge", "-o", file("merged.exr")};
     for (const std::string& name : parts) words.push_back(file(name));
@@ -121,20 +140,7 @@ TEST(CliParts, OfDirectMergeToTheBytesOfOneProcess) {
 TEST(CliParts, AreContinued) {
   const PartsFolder folder;
   const Words options{"--method", "direct", "--entry-samples", "4000", "--resolution", "16x16"};
-  Words line = Words{"render", folder.scene, "-o", folder.file("1.part"), "--log", "json", "--part", "1/1"};
-  const auto stores_passes = [&](const Outcome& stopped) {
-    return contains(stopped.out, "1.part stores the complete passes; resume with ");
-  };
-  Outcome stopped;
-  for (int delay = 0; delay < 20 && !stores_passes(stopped); ++delay) {
-    std::filesystem::remove(folder.file("1.part"));
-    Child child(line + options);
-    ASSERT_TRUE(child.prints(R"({"event":"progress","stage":"shading")"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(5 * delay));
-    child.send(SIGINT);
-    stopped = child.wait(20);
-  }
-  ASSERT_TRUE(stores_passes(stopped)) << stopped.out;
+  const Outcome stopped = folder.interrupted_part("1.part", options, "shading");
   EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
   expect_refused(folder.merge({"1.part"}), "1.part: is incomplete");
 
@@ -153,6 +159,17 @@ TEST(CliParts, AreContinued) {
   ASSERT_EQ(folder.part("1/1", "fresh.part", options).exit_code, 0);
   EXPECT_TRUE(folder.are_equal("1.part", "fresh.part"));
   EXPECT_FALSE(folder.are_equal("1.part", "dark.part"));
+}
+
+// Claim: the same of random walks. Fails if: the walks begin again, or a batch is walked twice.
+TEST(CliParts, OfRandomWalksAreContinued) {
+  const PartsFolder folder;
+  const Words options = folder.walks + Words{"--set", "settings.samples=4000"};
+  EXPECT_EQ(folder.interrupted_part("1.part", options, "random walks").exit_code, 130);
+  expect_refused(folder.merge({"1.part"}), "1.part: is incomplete");
+  EXPECT_EQ(folder.part("1/1", "1.part", options).exit_code, 0);
+  ASSERT_EQ(folder.part("1/1", "fresh.part", options).exit_code, 0);
+  EXPECT_TRUE(folder.are_equal("1.part", "fresh.part"));
 }
 
 // Claim: files that do not form one image are exit 2, and the message names the file and the difference; nothing is
