@@ -197,11 +197,17 @@ class MaterialTranslator {
     return texture;
   }
 
+  /// Texture of the base colour, and of alpha.
+  std::optional<Json> color_texture() {
+    std::optional<Json> colors = texture(base_.color_texture, base_.color_texture_name);
+    if (colors && scene_.textures.back()->has_channel(kAlpha)) alphas_ = colors;
+    return colors;
+  }
+
   void add_opaque(SurfaceTranslation& surface) {
     const double metalness = base_.metalness, roughness = add_grain(surface.keys);
-    const std::optional<Json> colors = texture(base_.color_texture, base_.color_texture_name);
-    if (colors && scene_.textures.back()->has_channel(kAlpha)) alphas_ = colors;
-    surface.keys["reflectance"] = times(colors, triple_json(surface.reflectance), triple_json(Vec3d(1)));
+    surface.keys["reflectance"] =
+        times(color_texture(), triple_json(surface.reflectance), triple_json(Vec3d(1)));
     const std::optional<Json> both = texture(base_.roughness_texture, "metallicRoughnessTexture");
     if (metalness > 0) surface.keys["metalness"] = times(channel(both, "b"), metalness, 1.0);
     surface.keys["specular_roughness"] = times(channel(both, "g"), roughness, 1.0);
@@ -341,7 +347,7 @@ class MaterialTranslator {
                  diffuse = values(kDiffuse).number("diffuseTransmissionFactor", 0);
     const double weight = clear + (1 - clear) * diffuse;
     const Vec3d color = color_of(values(kDiffuse), "diffuseTransmissionColorFactor", Vec3d(1));
-    std::optional<Json> base = texture(base_.color_texture, base_.color_texture_name);
+    std::optional<Json> base = color_texture();
     std::optional<Json> share;
     if (diffuse == 0 && clear > 0) share = channel(extension_texture(kClear, "transmissionTexture"), "r");
     if (clear == 0 && diffuse > 0)

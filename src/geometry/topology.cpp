@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/topology.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -149,18 +150,15 @@ std::vector<std::uint32_t> weld(const std::vector<Vec3f>& positions) {
 
 std::vector<bool> find_duplicates(const std::vector<Triangle>& triangles, const EdgeTable& edges) {
   std::vector<bool> duplicate(triangles.size());
-  std::vector<std::uint32_t> thirds;  // third vertices of the triangles at an edge, in their order
+  std::vector<std::array<std::uint32_t, 2>> beside;  // triangles at an edge: third vertex, index
   edges.for_each([&](std::uint32_t, std::uint32_t high, std::span<const std::uint32_t> corners) {
     if (corners.size() < 2) return;
-    thirds.clear();
-    for (const std::uint32_t corner : corners) {
-      const std::uint32_t third = triangles[corner / 3][(corner % 3 + 2) % 3];
-      thirds.push_back(third);
-    }
-    for (std::size_t i = 1; i < corners.size(); ++i)
-      if (thirds[i] > high && std::find(thirds.begin(), thirds.begin() + std::ptrdiff_t(i), thirds[i]) !=
-                                  thirds.begin() + std::ptrdiff_t(i))
-        duplicate[corners[i] / 3] = true;
+    beside.clear();
+    for (const std::uint32_t corner : corners)
+      beside.push_back({triangles[corner / 3][(corner % 3 + 2) % 3], corner / 3});
+    std::ranges::sort(beside);
+    for (std::size_t i = 1; i < beside.size(); ++i)  // at its two lower vertices, each triangle once
+      if (beside[i][0] > high && beside[i][0] == beside[i - 1][0]) duplicate[beside[i][1]] = true;
   });
   return duplicate;
 }

@@ -89,6 +89,12 @@ TEST(GltfTextures, AlphaMasksAreOpacity) {
   const ImportedAsset blended = import_of(material);
   EXPECT_NEAR(shape_of(blended).at("opacity").at("scale").get<double>(), .8, 1e-12);
   EXPECT_TRUE(has(blended.warnings, "partial transparency is not supported"));
+  Json wax = material;
+  wax["extensions"] = {
+      {"KHR_materials_volume", {{"attenuationColor", {.5, .3, .1}}, {"attenuationDistance", .002}}},
+      {"KHR_materials_scatter", {{"multiscatterColorFactor", {.9, .7, .4}}}}};
+  EXPECT_FALSE(shape_of(import_of(wax)).contains("opacity"));
+  EXPECT_TRUE(has(import_of(wax).warnings, "a translucent body has no holes"));
   material["emissiveFactor"] = {1, 1, 1};
   EXPECT_FALSE(shape_of(import_of(material)).contains("opacity"));
   material.erase("emissiveFactor");
