@@ -354,6 +354,29 @@ TEST(CliAssets, FilesOutsideAreAllowedOnDemand) {
     EXPECT_TRUE(contains(run_program({command, "--help"}, folder.path).out, "--allow-outside")) << command;
 }
 
+// Claim: `import --animation` writes a scene with the animation of that name, and refuses others with the known names.
+// Source: docs/assets.md. Fails if: the option is not passed on.
+TEST(CliAssets, ImportTakesAnAnimation) {
+  const ScratchFolder folder;
+  Asset asset = asset_test::cube_asset();
+  const int times = asset.accessor<float>("SCALAR", asset_test::kFloat, {0, 1}),
+            places = asset.accessor<float>("VEC3", asset_test::kFloat, {0, 0, 0, 1, 0, 0});
+  for (const char* name : {"walk", "run"})
+    asset.json["animations"].push_back(
+        {{"name", name},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+         {"samplers", {{{"input", times}, {"output", places}}}}});
+  put_bytes(folder.file("a.glb"), asset.glb());
+  const auto import = [&](const std::string& name) {
+    return run_program({"import", "a.glb", "--animation", name, "-o", "a.json", "--overwrite"}, folder.path);
+  };
+  EXPECT_EQ(import("run").exit_code, 0);
+  EXPECT_TRUE(contains(bytes_of(folder.file("a.json")), R"("animation": "1")"));
+  const Outcome unknown = import("swim");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(contains(unknown.err, "has no such animation")) << unknown.err;
+}
+
 // Claim: what of a glTF is not drawn as it says, and changes the image, is a warning of `render`; a skin and an alpha mask,
 // which are drawn, are none. Fails if it is only counted among what is not carried over.
 TEST(CliAssets, WhatChangesTheImageIsAWarning) {
