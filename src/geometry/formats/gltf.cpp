@@ -41,13 +41,13 @@ SourceMesh read_without_part(const std::string& path, std::string&, MeshUvs uvs)
   return read_posed(path, "", {}, uvs);
 }
 
+constexpr MeshFormat kFormat{.read = read_without_part,
+                             .read_part = read_primitive,
+                             .read_posed = read_posed,
+                             .contents = gltf_contents};
+
 }  // namespace
 
-constinit const MeshFormat glb_format{.read = read_without_part,
-                                      .read_part = read_primitive,
-                                      .read_posed = read_posed,
-                                      .contents = gltf_contents};
-
-constinit const MeshFormat gltf_format = glb_format;
+constinit const MeshFormat glb_format = kFormat, gltf_format = kFormat;
 
 }  // namespace opaline
