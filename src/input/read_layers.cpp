@@ -65,7 +65,8 @@ void read_layers(const Value& value, double mm_per_unit, std::span<const Medium>
   medium.layers.clear();
   for (std::size_t i = 0; i < list.size(); ++i) {
     const ObjectReader one(list[i], "medium.layers");
-    const Medium& own = medium_of(one.need("medium"), media, medium);
+    const Value name = one.need("medium");
+    const Medium& own = medium_of(name, media, medium);
     MediumLayer& layer = medium.layers.emplace_back();
     layer.medium = own.name;
     layer.coefficients = coefficients_of(own);
