@@ -11,6 +11,7 @@
 #include <OpenMesh/Core/Mesh/DefaultTriMesh.hh>
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
+#include <boost/property_map/property_map.hpp>  // of pointers, for disjoint_sets
 #include <exception>
 #include <map>
 #include <numbers>
