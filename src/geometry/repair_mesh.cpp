@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/repair_mesh.h"
 
+// Before CGAL's headers: functions that they declare in boost::detail would hide those for pointers.
+#include <boost/pending/disjoint_sets.hpp>
+//
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
@@ -10,8 +13,6 @@
 
 #include <OpenMesh/Core/Mesh/DefaultTriMesh.hh>
 #include <algorithm>
-#include <boost/pending/disjoint_sets.hpp>
-#include <boost/property_map/property_map.hpp>  // of pointers, for disjoint_sets
 #include <exception>
 #include <map>
 #include <numbers>
