@@ -108,7 +108,7 @@ void RayScene::attach(const World& world, std::size_t index, RayBuild build, con
   std::ranges::copy(mesh.triangles, indices);
   std::unique_ptr<Cutout> cutout;
   if (!world.opacities.empty() && world.opacities[index]) {
-    cutout = std::make_unique<Cutout>(*world.opacities[index], mesh.uvs);
+    cutout = std::make_unique<Cutout>(Cutout{*world.opacities[index], mesh.uvs});
     rtcSetGeometryUserData(geometry, cutout.get());
     rtcSetGeometryIntersectFilterFunction(geometry, pass_holes);
     rtcSetGeometryOccludedFilterFunction(geometry, pass_holes);

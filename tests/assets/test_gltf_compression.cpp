@@ -23,9 +23,9 @@ std::vector<std::array<std::array<float, 6>, 3>> triangles_of(const Asset& asset
       const Vec3f n = part.normals[corners[k]];
       triangle[k] = {float(p.x), float(p.y), float(p.z), n.x, n.y, n.z};
     }
-    std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
   }
-  std::ranges::sort(triangles);
+  std::sort(triangles.begin(), triangles.end());
   return triangles;
 }
 
