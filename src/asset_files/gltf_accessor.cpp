@@ -41,20 +41,7 @@ double number(const char* bytes, bool normalized) {
 }
 
 double number(const char* bytes, std::size_t type, bool normalized) {
-  switch (type) {
-    case kGltfByte:
-      return number<std::int8_t>(bytes, normalized);
-    case kGltfUnsignedByte:
-      return number<std::uint8_t>(bytes, normalized);
-    case kGltfShort:
-      return number<std::int16_t>(bytes, normalized);
-    case kGltfUnsignedShort:
-      return number<std::uint16_t>(bytes, normalized);
-    case kGltfUnsignedInt:
-      return number<std::uint32_t>(bytes, normalized);
-    default:
-      return number<float>(bytes, normalized);
-  }
+  return with_component(type, [&](auto zero) { return number<decltype(zero)>(bytes, normalized); });
 }
 
 /// One accessor with its checks.
@@ -87,20 +74,7 @@ class AccessorReader {
     check_type(type);
     const Elements elements = dense(kNumbers * size_);
     prepare(elements.count);
-    switch (accessor_.component) {
-      case kGltfByte:
-        return visit<std::int8_t, kNumbers>(elements, use);
-      case kGltfUnsignedByte:
-        return visit<std::uint8_t, kNumbers>(elements, use);
-      case kGltfShort:
-        return visit<std::int16_t, kNumbers>(elements, use);
-      case kGltfUnsignedShort:
-        return visit<std::uint16_t, kNumbers>(elements, use);
-      case kGltfUnsignedInt:
-        return visit<std::uint32_t, kNumbers>(elements, use);
-      default:
-        return visit<float, kNumbers>(elements, use);
-    }
+    with_component(accessor_.component, [&](auto zero) { visit<decltype(zero), kNumbers>(elements, use); });
   }
 
  private:

@@ -11,6 +11,25 @@
 
 namespace opaline {
 
+/// Calls use with a 0 of a componentType's numbers; a float's for unknown types.
+template <class Use>
+auto with_component(std::size_t type, const Use& use) {
+  switch (type) {
+    case kGltfByte:
+      return use(std::int8_t());
+    case kGltfUnsignedByte:
+      return use(std::uint8_t());
+    case kGltfShort:
+      return use(std::int16_t());
+    case kGltfUnsignedShort:
+      return use(std::uint16_t());
+    case kGltfUnsignedInt:
+      return use(std::uint32_t());
+    default:
+      return use(float());
+  }
+}
+
 /// in    index: of an existing accessor
 /// out   its vectors, with sparse ones substituted, and normalized integers converted
 /// error Error{bad_input}: not a VEC3, or beyond its buffer view

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "asset_files/asset_file.h"
+#include "asset_files/gltf_accessor.h"
 
 namespace opaline {
 namespace {
@@ -174,24 +175,6 @@ class PrimitiveDecoder {
     accessor.offset = 0;
     accessor.count = mesh.num_points();
     accessor.sparse.reset();
-  }
-
-  template <class Use>
-  void with_component(std::size_t type, const Use& use) const {
-    switch (type) {
-      case kGltfByte:
-        return use(std::int8_t());
-      case kGltfUnsignedByte:
-        return use(std::uint8_t());
-      case kGltfShort:
-        return use(std::int16_t());
-      case kGltfUnsignedShort:
-        return use(std::uint16_t());
-      case kGltfUnsignedInt:
-        return use(std::uint32_t());
-      default:
-        return use(float());
-    }
   }
 
   void take_indices(const draco::Mesh& mesh) {

@@ -37,6 +37,7 @@ std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);
 
 /// The same without a special case for equal heights.
 Texture read_displacement(const Value& value, double mm_per_unit);
+/// error a noise or triplanar texture
 Texture read_opacity(const Value& value);
 
 /// Index of refraction with the reflectance of `ior` at normal incidence, times the weight.
