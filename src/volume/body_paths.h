@@ -111,10 +111,11 @@ class BodyPaths {
       const double edge = std::max(kStep, double(space_.grid.cells()[cell].size) - 1);
       const double step = edge * space_.lattice.cell;
       const std::uint32_t next = space_.grid.at(Vec3f(at(way, length + step)));
-      if (const std::optional<Exit> exit = exit_at(way, length + step, length, cell, next)) {
-        visit(length, exit->length - length, cell);
-        return {exit, cell};
-      }
+      if (next == DiffusionGrid::kNone || !space_.elements_of.of(next).empty())
+        if (const std::optional<Exit> exit = exit_at(way, length + step, length, cell, next)) {
+          visit(length, exit->length - length, cell);
+          return {exit, cell};
+        }
       if (next == DiffusionGrid::kNone) break;
       visit(length, step, cell);
       length += step;

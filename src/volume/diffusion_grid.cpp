@@ -304,29 +304,15 @@ struct DiffusionGrid::Builder {
 };
 
 DiffusionGrid::DiffusionGrid(const InsideLines& lines, const Lattice& lattice, std::span<const Facet> surface)
-    : bricks_of_{lattice.nx / kLargest, lattice.ny / kLargest, lattice.nz / kLargest},
-      bricks_(std::size_t(bricks_of_[0]) * std::size_t(bricks_of_[1]) * std::size_t(bricks_of_[2]), kNone) {
+    : bricks_of_{unsigned(lattice.nx / kLargest), unsigned(lattice.ny / kLargest),
+                 unsigned(lattice.nz / kLargest)},
+      bricks_(std::size_t(bricks_of_[0]) * bricks_of_[1] * bricks_of_[2], kNone) {
   Builder builder(*this, lines, lattice, surface);
-  for (int k = 0; k < bricks_of_[2]; ++k)
-    for (int j = 0; j < bricks_of_[1]; ++j)
-      for (int i = 0; i < bricks_of_[0]; ++i, ++builder.brick)
-        builder.fill(i * kLargest, j * kLargest, k * kLargest, kLargest);
+  for (int k = 0; k < lattice.nz; k += kLargest)
+    for (int j = 0; j < lattice.ny; j += kLargest)
+      for (int i = 0; i < lattice.nx; i += kLargest, ++builder.brick) builder.fill(i, j, k, kLargest);
   builder.weigh_by_planes(surface);
   builder.link();
-}
-
-std::uint32_t DiffusionGrid::at(int i, int j, int k) const {
-  if (i < 0 || j < 0 || k < 0) return kNone;
-  const int x = i / kLargest, y = j / kLargest, z = k / kLargest;
-  if (x >= bricks_of_[0] || y >= bricks_of_[1] || z >= bricks_of_[2]) return kNone;
-  const std::uint32_t brick = bricks_[std::size_t((z * bricks_of_[1] + y) * bricks_of_[0] + x)];
-  if (brick == kNone) return kNone;
-  if ((brick & kWhole) != 0) return brick & ~kWhole;
-  return slots_[brick + std::uint32_t(((k & 7) * 8 + (j & 7)) * 8 + (i & 7))];
-}
-
-std::uint32_t DiffusionGrid::at(const Vec3f& point) const {
-  return at(int(std::floor(point.x)), int(std::floor(point.y)), int(std::floor(point.z)));
 }
 
 void DiffusionGrid::find_around(const Vec3f& point, const Vec3f& normal,

@@ -55,7 +55,20 @@ class DiffusionGrid {
   std::size_t first_link(std::size_t cell) const { return first_link_[cell]; }
   std::span<const ObliqueLink> oblique() const { return oblique_; }
   /// The cell around a point; kNone outside the body.
-  std::uint32_t at(const Vec3f& point) const;
+  std::uint32_t at(const Vec3f& point) const {
+    if (!(point.x >= 0 && point.y >= 0 && point.z >= 0)) return kNone;
+    return at(int(point.x), int(point.y), int(point.z));
+  }
+  /// The cell around a lattice cell.
+  std::uint32_t at(int i, int j, int k) const {
+    const unsigned x = unsigned(i) / kLargest, y = unsigned(j) / kLargest, z = unsigned(k) / kLargest;
+    const auto [nx, ny, nz] = bricks_of_;
+    if (x >= nx || y >= ny || z >= nz) return kNone;  // also negative ones
+    const std::uint32_t brick = bricks_[(std::size_t(z) * ny + y) * nx + x];
+    if (brick == kNone) return kNone;
+    if ((brick & kWhole) != 0) return brick & ~kWhole;
+    return slots_[brick + std::uint32_t(((k & 7) * 8 + (j & 7)) * 8 + (i & 7))];
+  }
   /// Cells around a point and beside it along a plane, each once.
   void find_around(const Vec3f& point, const Vec3f& normal, std::vector<std::uint32_t>& found) const;
 
@@ -63,11 +76,9 @@ class DiffusionGrid {
   struct Builder;
   static constexpr std::uint32_t kWhole = 0x80000000u;  // a brick of one cell
 
-  std::uint32_t at(int i, int j, int k) const;
-
-  std::array<int, 3> bricks_of_{};     // along each axis
-  std::vector<std::uint32_t> bricks_;  // kNone, kWhole + cell, or first of its 512 slots
-  std::vector<std::uint32_t> slots_;   // a cell for each lattice cell of a divided brick
+  std::array<unsigned, 3> bricks_of_{};  // along each axis
+  std::vector<std::uint32_t> bricks_;    // kNone, kWhole + cell, or first of its 512 slots
+  std::vector<std::uint32_t> slots_;     // a cell for each lattice cell of a divided brick
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> first_link_;
   std::vector<Link> links_;

@@ -126,12 +126,13 @@ void Depositor::deposit(const Collided& collided, const Vec3d& about, std::uint3
   Rgb left = collided.flux;
   if (found != DiffusionGrid::kNone) {
     const DiffusionGrid::Cell& cell = space_.grid.cells()[home];
+    const std::array<int, 3> at{int(place.x), int(place.y), int(place.z)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float centre = cell.centre[axis];
-      const float middle = cell.size > 1 ? centre : std::floor(place[axis]) + .5f;
-      Vec3f beside = place;
-      beside[axis] = middle + std::copysign(.5f * float(cell.size) + .5f, place[axis] - centre);
-      const std::uint32_t other = space_.grid.at(beside);
+      const int corner = cell.size > 1 ? int(centre) - cell.size / 2 : at[axis];
+      std::array<int, 3> beside = at;
+      beside[axis] = place[axis] < centre ? corner - 1 : corner + cell.size;
+      const std::uint32_t other = space_.grid.at(beside[0], beside[1], beside[2]);
       if (other == DiffusionGrid::kNone || other == home) continue;
       const double inverse = 1 / double(space_.grid.cells()[other].centre[axis] - centre);
       for (std::size_t c = 0; c < 3; ++c) {
