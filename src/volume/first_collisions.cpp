@@ -137,7 +137,7 @@ void Depositor::deposit(const Collided& collided, const Vec3d& about, std::uint3
       const double inverse = 1 / double(space_.grid.cells()[other].centre[axis] - centre);
       for (std::size_t c = 0; c < 3; ++c) {
         const double offset = collided.places[c][axis] - double(centre);
-        const double share = collided.flux[c] * std::clamp(offset * inverse, 0., 1.);
+        const double share = collided.flux[c] * std::min(1., std::max(0., offset * inverse));
         result_.source[other].c[c] += float(share);
         left[c] -= share;
       }
