@@ -78,7 +78,7 @@ class DirectlyLitBodies {
 // Bounced light depends on all bodies.
 void Session::State::update_bounces(std::span<BodyStages> bodies) {
   const PrecomputeInput& input = bodies.front().input;
-  KeyBuilder all("bounces", 10);
+  KeyBuilder all("bounces", 11);
   all.add(surfaces_key(input, mesh_keys_, bodies.front().lights));
   for (const Body& body : bodies_) all.add(method_of(body.plan.method).direct_key(body));
   std::vector<StageKey> wanted;

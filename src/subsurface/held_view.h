@@ -17,6 +17,7 @@
 namespace opaline {
 
 class IrradianceLattice;
+class NearestSample;
 
 /// Maximum size of cached gathered hits, bytes.
 inline constexpr std::size_t kMostGatheredBytes = std::size_t(256) << 20;
@@ -37,7 +38,9 @@ struct HeldView {
   struct Surface {
     std::vector<PointTransfers> lights;  ///< one per light, without weights if still to be traced
     QueryPackets packets;
-    std::unique_ptr<Coat> coat;  ///< null: its reflection is still to be computed
+    std::shared_ptr<const NearestSample> cells;  ///< null: the nearest ones are still to be found
+    std::vector<std::uint32_t> nearest;          ///< index of each hit's nearest cell, of a gathered ray
+    std::unique_ptr<Coat> coat;                  ///< null: its reflection is still to be computed
     /// For hits without cache points around them (BouncedLight), and for further bounces at gathered hits.
     std::unique_ptr<Gathering> gathering;
   };
@@ -94,7 +97,7 @@ struct HeldView {
     std::size_t bytes() const {
       std::size_t sum = met.size() * sizeof(Met) + seen.bytes();
       for (const Surface& surface : seen.surfaces)
-        sum += surface.packets.order.size() * sizeof(std::uint32_t) +
+        sum += (surface.packets.order.size() + surface.nearest.size()) * sizeof(std::uint32_t) +
                surface.packets.cuts.size() * sizeof(PacketCut);
       return sum;
     }

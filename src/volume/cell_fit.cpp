@@ -92,17 +92,10 @@ struct FittedMean {
 
 constexpr std::size_t kChunk = 256;  // cells
 
-/// Centroids instead of positions.
-std::vector<SurfaceSample> at_centroids(std::span<const SurfaceSample> samples) {
-  std::vector<SurfaceSample> moved(samples.begin(), samples.end());
-  for (SurfaceSample& s : moved) s.position = s.centroid;
-  return moved;
-}
-
 }  // namespace
 
 CellWeights::Places::Places(std::span<const SurfaceSample> samples)
-    : middles(at_centroids(samples), nullptr, kCube), of_sample(samples.size()) {
+    : middles(NearestSample::by_centroids(samples, kCube)), of_sample(samples.size()) {
   double area = 0;
   for (const SurfaceSample& s : samples) area += double(s.area);
   if (area > 0) spacing = float(std::sqrt(area / double(samples.size())));

@@ -70,6 +70,24 @@ NearestSample::NearestSample(std::span<const SurfaceSample> samples, const World
                                                              sheet_normal(samples[i], world), i};
 }
 
+NearestSample NearestSample::by_centroids(std::span<const SurfaceSample> samples, float cube_edge,
+                                          double least_area) {
+  double area = 0;
+  for (const SurfaceSample& s : samples) area += double(s.area);
+  least_area *= area / double(samples.size());
+  std::vector<SurfaceSample> cells;
+  std::vector<std::uint32_t> index;
+  for (std::uint32_t i = 0; i < samples.size(); ++i) {
+    if (double(samples[i].area) < least_area) continue;
+    cells.push_back(samples[i]);
+    cells.back().position = samples[i].centroid;
+    index.push_back(i);
+  }
+  NearestSample nearest(cells, nullptr, cube_edge);
+  for (Member& member : nearest.members_) member.sample = index[member.sample];
+  return nearest;
+}
+
 // Cube of a position; cubes at the limits represent everything beyond.
 NearestSample::Place NearestSample::place_of(const Vec3f& position) const {
   const auto coordinate = [this](float c) {

@@ -25,6 +25,11 @@ class NearestSample {
   explicit NearestSample(std::span<const SurfaceSample> samples, const World* world = nullptr,
                          float cube_edge = 1);
 
+  /// By the centroids of the samples' cells.
+  /// least_area: smaller cells are left out; times their mean area, below 1
+  static NearestSample by_centroids(std::span<const SurfaceSample> samples, float cube_edge,
+                                    double least_area = 0);
+
   /// Index of the nearest sample on the point's sheet; on any sheet if there is none nearby.
   std::uint32_t at(const Vec3f& position, const Vec3f& normal) const;
 

@@ -35,9 +35,8 @@ Blocks blocks_of(const SurfaceHits& hits) {
 
 }  // namespace
 
-CellField::CellField(const RenderInput& input, const Body& body, const CellFit& fit, const RgbF& local)
+CellField::CellField(const RenderInput& input, const Body& body, const RgbF& local)
     : body_(body),
-      fit_(fit),
       local_(local),
       is_noisy_(has_area_lights(input.scene)),
       samples_per_pixel_(input.scene.film.samples_per_pixel) {}
@@ -59,6 +58,12 @@ LeavingLight CellField::at(const SurfaceHits& hits, PointIrradianceInput lightin
   LeavingLight light;
   light.exitance.resize(hits.points.size());
   light.error.resize(hits.points.size());
+  read_cells(hits, held, light);
+  if (local_ != RgbF{}) add_local(hits, lighting, pass, held, light);
+  return light;
+}
+
+void FittedCellField::read_cells(const SurfaceHits& hits, HeldView::Surface*, LeavingLight& light) const {
   CellFit::Reader reader(fit_);
   std::vector<Vec3f> positions;
   const Blocks blocks = blocks_of(hits);
@@ -77,8 +82,19 @@ LeavingLight CellField::at(const SurfaceHits& hits, PointIrradianceInput lightin
       }
     }
   }
-  if (local_ != RgbF{}) add_local(hits, lighting, pass, held, light);
-  return light;
+}
+
+void NearestCellField::read_cells(const SurfaceHits& hits, HeldView::Surface* held,
+                                  LeavingLight& light) const {
+  HeldView::Surface own;
+  HeldView::Surface& found = held != nullptr ? *held : own;
+  if (found.cells != means_.cells) {
+    found.nearest.clear();
+    for (const SurfacePoint& point : hits.points)
+      found.nearest.push_back(means_.cells->at(point.position, point.normal));
+    found.cells = means_.cells;
+  }
+  for (std::size_t i = 0; i < hits.points.size(); ++i) light.exitance[i] = means_.values[found.nearest[i]];
 }
 
 }  // namespace opaline

@@ -163,7 +163,7 @@ std::vector<RgbF> VolumeMethod::exitance_at(const Body& body, std::span<const Qu
 }
 
 std::unique_ptr<Field> VolumeMethod::field(const RenderInput& input, const Body& body) const {
-  return std::make_unique<CellField>(input, body, *volume_state(body).fit, RgbF{});
+  return std::make_unique<FittedCellField>(input, body, *volume_state(body).fit, RgbF{});
 }
 
 }  // namespace opaline

@@ -98,8 +98,8 @@ void VolumeDiffusionMethod::plan(const PlanningInput& input, BodyPlan& body,
 
 BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyPlan& body) const {
   // Bytes, fitted to bench_plan: per cell cutting the surface, exitance and error during the fits; per light,
-  // weights; with bounces, weights for a second fit, the fit, and the gathered light.
-  constexpr std::size_t kCutSample = 680, kLight = 4, kBounces = 420;
+  // weights; with bounces, the gathered light and the exitance that it meets.
+  constexpr std::size_t kCutSample = 680, kLight = 4, kBounces = 250;
   constexpr double kVaryingCell = 500;  // its own medium, and the flux to each neighbour
   const double in_wires =
       body.thickness > 0 ? 1.2 * needle_fraction(input.world, body) * body.cell / body.thickness : 0;

@@ -92,13 +92,31 @@ RgbF local_reflectance(const Scene& scene, const Body& body) {
   return local;
 }
 
-/// Fit of the direct light and another exitance.
-std::shared_ptr<const CellFit> fit_with(BodyStages& stages, std::span<const RgbF> added,
-                                        std::span<const RgbF> errors) {
-  auto& state = state_of<VolumeDiffusionState>(stages.body);
+/// Exitance by lights and another one.
+std::vector<RgbF> with_bounced(const VolumeDiffusionState& state, std::span<const RgbF> bounced) {
   std::vector<RgbF> all = state.direct.value.exitance;
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] += added[i];
-  return fit_cells(stages, state.weights, all, errors);
+  for (std::size_t i = 0; i < bounced.size(); ++i) all[i] += bounced[i];
+  return all;
+}
+
+/// Makes gathered rays meet this exitance.
+void set_seen(BodyStages& stages, std::vector<RgbF> exitance) {
+  auto& state = state_of<VolumeDiffusionState>(stages.body);
+  stages.store.get(state.nearest, stages.keys.samples_key, [&] {
+    // Cells cut to slivers are inaccurate, and they are the nearest to larger areas than theirs.
+    constexpr double kLeastArea = .2;
+    return std::make_shared<const NearestSample>(
+        NearestSample::by_centroids(stages.body.surface.samples, 1, kLeastArea));
+  });
+  state.seen = {state.nearest.value, std::move(exitance)};
+  state.fit = nullptr;
+}
+
+void set_fit(BodyStages& stages, std::span<const RgbF> exitance) {
+  auto& state = state_of<VolumeDiffusionState>(stages.body);
+  state.fit = nullptr;  // if interrupted
+  state.fit = fit_cells(stages, state.weights, exitance, state.direct.value.error);
+  state.seen = {};
 }
 
 }  // namespace
@@ -119,13 +137,12 @@ void VolumeDiffusionMethod::prepare(BodyStages& stages) const {
         return update_cells(stages).exitance(stages.lights, body.transfers, body.entering,
                                              stages.input.monitor);
       });
-  if (source != ResultSource::reused || state.direct_fit == nullptr) {
-    state.direct.key = {};  // until the fit is complete
-    state.direct_fit =
-        fit_cells(stages, state.weights, state.direct.value.exitance, state.direct.value.error);
-    state.direct.key = key;
-    remove_bounced(stages);
-  } else if (!gathers_light(stages.input.scene, body.plan)) {
+  const bool has_bounced = state.bounced.key != StageKey{};
+  if (!gathers_light(stages.input.scene, body.plan)) {
+    state.bounced = {};
+    if (source != ResultSource::reused || has_bounced || state.fit == nullptr)
+      set_fit(stages, state.direct.value.exitance);
+  } else if (source != ResultSource::reused) {
     remove_bounced(stages);
   }
   stages.note("diffusion", source, has_cells ? "solved on the existing cells" : "solved");
@@ -142,36 +159,36 @@ StageKey VolumeDiffusionMethod::bounced_key(const Body& body) const {
 void VolumeDiffusionMethod::remove_bounced(BodyStages& stages) const {
   auto& state = state_of<VolumeDiffusionState>(stages.body);
   state.bounced = {};
-  state.fit = state.direct_fit;
+  set_seen(stages, state.direct.value.exitance);
 }
 
 void VolumeDiffusionMethod::add_bounced(BodyStages& stages, std::span<const RgbF> bounced,
                                         const StageKey& key) const {
   auto& state = state_of<VolumeDiffusionState>(stages.body);
   if (state.bounced.key == key) return;
-  remove_bounced(stages);
-  if (std::ranges::all_of(bounced, [](const RgbF& irradiance) { return irradiance == RgbF{}; })) {
-    state.bounced.key = key;
-    return;
-  }
   StageResult<VolumeExitance> added;
-  stages.store.get(added, key, VolumeCodec{stages.body.surface.samples.size()}, [&] {
-    return update_cells(stages).exitance_of_even(bounced, state.direct.value.exitance, stages.input.monitor);
-  });
-  state.fit = fit_with(stages, added.value.exitance, state.direct.value.error);
+  if (std::ranges::all_of(bounced, [](const RgbF& irradiance) { return irradiance == RgbF{}; }))
+    added.key = key;
+  else
+    stages.store.get(added, key, VolumeCodec{stages.body.surface.samples.size()}, [&] {
+      return update_cells(stages).exitance_of_even(bounced, state.direct.value.exitance,
+                                                   stages.input.monitor);
+    });
+  set_fit(stages, with_bounced(state, added.value.exitance));
   state.bounced = std::move(added);
 }
 
 void VolumeDiffusionMethod::add_for_gathering(BodyStages& stages, std::span<const RgbF> bounced) const {
-  auto& state = state_of<VolumeDiffusionState>(stages.body);
+  const auto& state = state_of<VolumeDiffusionState>(stages.body);
   const VolumeExitance added =
       update_cells(stages).exitance_of_even(bounced, state.direct.value.exitance, stages.input.monitor);
-  state.fit = fit_with(stages, added.exitance, {});
+  set_seen(stages, with_bounced(state, added.exitance));
 }
 
 std::unique_ptr<MethodState> VolumeDiffusionMethod::direct_state(const BodyStages& stages) const {
   auto direct = std::make_unique<VolumeDiffusionState>();
-  direct->fit = volume_diffusion_state(stages.body).direct_fit;
+  const VolumeDiffusionState& state = volume_diffusion_state(stages.body);
+  direct->seen = {state.nearest.value, state.direct.value.exitance};
   return direct;
 }
 
@@ -204,7 +221,9 @@ std::vector<RgbF> VolumeDiffusionMethod::exitance_at(const Body& body, std::span
 }
 
 std::unique_ptr<Field> VolumeDiffusionMethod::field(const RenderInput& input, const Body& body) const {
-  return std::make_unique<CellField>(input, body, *volume_diffusion_state(body).fit,
-                                     local_reflectance(input.scene, body));
+  const VolumeDiffusionState& state = volume_diffusion_state(body);
+  const RgbF local = local_reflectance(input.scene, body);
+  if (state.fit == nullptr) return std::make_unique<NearestCellField>(input, body, state.seen, local);
+  return std::make_unique<FittedCellField>(input, body, *state.fit, local);
 }
 }  // namespace opaline

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "methods/volume/cell_field.h"
 #include "methods/volume/fit_cells.h"
 #include "volume/volume_diffusion.h"
 #include "volume/volume_exitance.h"
@@ -14,9 +15,11 @@ struct VolumeDiffusionState : MethodState {
   static constexpr Method kMethod = Method::volume_diffusion;
   StageResult<std::shared_ptr<const VolumeDiffusion>> cells;
   ReusedWeights weights;
+  StageResult<std::shared_ptr<const NearestSample>> nearest;
   StageResult<VolumeExitance> direct,
       bounced;  ///< from lights, and from other surfaces; bounced: key of zeros if none
-  std::shared_ptr<const CellFit> direct_fit, fit;  ///< fit of the first, and of both
+  std::shared_ptr<const CellFit> fit;  ///< fit of both; null while light of `seen` is gathered
+  CellMeans seen;                      ///< exitance on gathered rays
 };
 
 /// in    body: prepared by Method::volume_diffusion
