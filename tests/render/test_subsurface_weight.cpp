@@ -92,10 +92,11 @@ TEST(SubsurfaceWeight, IsAShareOfTheLight) {
   const ScratchFolder folder;
   for (const std::string& method : kAllMethods) {
     SCOPED_TRACE(method);
+    Session session;
     const auto picture = [&](const std::string& weight) {
       return picture_of(
-          folder, scene_text(R"(, "base_color": [0.7, 0.3, 0.1], "subsurface_weight": )" + weight, method),
-          kAlone);
+          session, folder,
+          scene_text(R"(, "base_color": [0.7, 0.3, 0.1], "subsurface_weight": )" + weight, method), kAlone);
     };
     const Image none = picture("0"), all = picture("1");
     expect_diffuse(picture("0.3"), 2e-4, [&](int x, int y, const char* name) {
@@ -112,14 +113,16 @@ TEST(SubsurfaceWeight, MeetsTexturesAsATint) {
     return x < 30 ? Bytes{250, 250, 250} : Bytes{60, 60, 60};
   });
   const std::string texture = R"({"texture": "sides.png", "color_space": "linear"})";
+  Session with_tint, with_weight;
   for (const std::string& method : kAllMethods)
     for (const std::string mix : {"pre", "post", "split"}) {
       SCOPED_TRACE(method + ' ' + mix);
       const std::string mixed = R"(, "texture_mix": ")" + mix + '"';
-      const Image tinted = picture_of(folder, scene_text(R"(, "tint": )" + texture + mixed, method), kAlone);
+      const Image tinted =
+          picture_of(with_tint, folder, scene_text(R"(, "tint": )" + texture + mixed, method), kAlone);
       expect_diffuse(
           picture_of(
-              folder,
+              with_weight, folder,
               scene_text(R"(, "subsurface_weight": )" + texture + R"(, "base_color": 0)" + mixed, method),
               kAlone),
           1e-4, [&](int x, int y, const char* name) { return channel(tinted, x, y, name); });
@@ -132,6 +135,7 @@ TEST(SubsurfaceWeight, MeetsTexturesAsATint) {
 TEST(SubsurfaceWeight, LeavesAFurnaceWhite) {
   const ScratchFolder folder;
   put_png(folder.file("w.png"), 64, 32, [](int x, int y) { return Bytes{x * 4, y * 8, 100}; });
+  Session session;
   for (const std::string weight : {"0.25", R"({"texture": "w.png"})"})
     for (const auto& [method, samples_per_pixel, tolerance] :
          {std::tuple<std::string, int, double>{"lambert", 1, .005},
@@ -146,7 +150,7 @@ TEST(SubsurfaceWeight, LeavesAFurnaceWhite) {
           std::to_string(samples_per_pixel) + R"(},
          "settings": {"samples": 20000, "light_samples": 1024, "method": ")" +
           method + "\"}}";
-      const Image image = picture_of(folder, text);
+      const Image image = picture_of(session, folder, text);
       for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x)
           EXPECT_NEAR(channel(image, x, y, "G"), 1, tolerance) << weight << method << x << ' ' << y;

@@ -40,15 +40,21 @@ inline Scene with_few_triangles(Scene scene) {
 }
 
 /// The picture of a scene file in the folder, by any method; curved shapes have few triangles.
-inline Image picture_of(const ScratchFolder& folder, const std::string& text,
+inline Image picture_of(Session& session, const ScratchFolder& folder, const std::string& text,
                         const std::vector<std::string>& overrides = {}) {
-  Session session;
   session.edit(with_few_triangles(parse_scene(text, folder.file("scene.json"), overrides)));
   session.prepare();
   if (session.scene().settings.method != Method::direct) return session.render().image;
   DirectState state;
   return render_direct({session.scene(), session.world(), session.rays(), session.plan()}, state)
       .picture.image;
+}
+
+/// By a session that has seen nothing else.
+inline Image picture_of(const ScratchFolder& folder, const std::string& text,
+                        const std::vector<std::string>& overrides = {}) {
+  Session session;
+  return picture_of(session, folder, text, overrides);
 }
 
 }  // namespace opaline::test
