@@ -126,7 +126,7 @@ TEST(Fuzz, TranslucentWhiteFurnace) {
   const ScratchFolder folder;
   const auto mean_of = [&](const std::string& method, const std::string& fuzz) {
     std::string text = ball_text(R"("medium": "m")",
-                                 R"(, "samples": 4000, "entry_samples": 64, "method": ")" + method + '"');
+                                 R"(, "samples": 1500, "entry_samples": 64, "method": ")" + method + '"');
     text.insert(1, R"("media": {"m": {"sigma_a": 0, "sigma_s_prime": 2, "specular_ior": 1.4)" + fuzz + "}},");
     return mean_green(picture_of(folder, text));
   };
