@@ -164,7 +164,7 @@ TEST(CliParts, AreContinued) {
 // Claim: the same of random walks. Fails if: the walks begin again, or a batch is walked twice.
 TEST(CliParts, OfRandomWalksAreContinued) {
   const PartsFolder folder;
-  const Words options = folder.walks + Words{"--set", "settings.samples=4000"};
+  const Words options = folder.walks + Words{"--set", "settings.samples=1000"};
   EXPECT_EQ(folder.interrupted_part("1.part", options, "random walks").exit_code, 130);
   expect_refused(folder.merge({"1.part"}), "1.part: is incomplete");
   EXPECT_EQ(folder.part("1/1", "1.part", options).exit_code, 0);
