@@ -17,6 +17,9 @@ constexpr int kSide = 16;
 // Between things surfaces are lit as methods know best, where parts are not added up.
 const std::vector<std::string> kAlone{"settings.bounces=0"};
 
+// Enough where both sides of a comparison have the same random numbers.
+const std::string kFewSamples = "settings.samples=300";
+
 const std::vector<std::string> kAllMethods{"lambert", "hierarchical", "direct", "volume_diffusion", "volume"};
 
 /// A ball on a floor under a lamp and a little light from all around; `surface` are the ball's keys.
@@ -50,7 +53,7 @@ TEST(SubsurfaceWeight, OfOneIsNone) {
   put_png(folder.file("grey.png"), 4, 4, Bytes{51, 51, 51});
   for (const std::string& method : kAllMethods) {
     const auto picture = [&](const std::string& keys) {
-      return picture_of(folder, scene_text(keys, method));
+      return picture_of(folder, scene_text(keys, method), {kFewSamples});
     };
     const Image plain = picture("");
     EXPECT_EQ(plain.pixels, picture(R"(, "subsurface_weight": 1, "base_color": 0.3)").pixels) << method;
@@ -113,18 +116,19 @@ TEST(SubsurfaceWeight, MeetsTexturesAsATint) {
     return x < 30 ? Bytes{250, 250, 250} : Bytes{60, 60, 60};
   });
   const std::string texture = R"({"texture": "sides.png", "color_space": "linear"})";
+  const std::vector<std::string> overrides{kAlone[0], kFewSamples};
   Session with_tint, with_weight;
   for (const std::string& method : kAllMethods)
     for (const std::string mix : {"pre", "post", "split"}) {
       SCOPED_TRACE(method + ' ' + mix);
       const std::string mixed = R"(, "texture_mix": ")" + mix + '"';
       const Image tinted =
-          picture_of(with_tint, folder, scene_text(R"(, "tint": )" + texture + mixed, method), kAlone);
+          picture_of(with_tint, folder, scene_text(R"(, "tint": )" + texture + mixed, method), overrides);
       expect_diffuse(
           picture_of(
               with_weight, folder,
               scene_text(R"(, "subsurface_weight": )" + texture + R"(, "base_color": 0)" + mixed, method),
-              kAlone),
+              overrides),
           1e-4, [&](int x, int y, const char* name) { return channel(tinted, x, y, name); });
     }
 }
