@@ -310,19 +310,34 @@ class GltfImporter {
 
   /// in    poses: of moving parts, in equal steps of time
   template <class Visit>
-  void for_each_point(int poses, const Visit& visit) const {
-    for (const PlacedPart& placed : parts_)
-      for (int i = 0; i < (placed.is_moving ? poses : 1); ++i) {
-        const GltfState state =
-            placed.is_moving ? motion_->at(double(i) / std::max(poses - 1, 1)) : GltfState{};
-        const GltfPart part =
-            read_gltf_part(gltf_, placed.part, MeshUvs::unread, placed.is_moving ? &state : nullptr);
-        std::vector<char> is_used(part.positions.size());
-        for (const auto& triangle : part.triangles)
-          for (const std::uint32_t v : triangle) is_used[v] = 1;
-        for (std::size_t v = 0; v < is_used.size(); ++v)
-          if (is_used[v] != 0) visit(transform_point(placed.to_world, part.positions[v]));
+  void for_each_point(int poses, const Visit& visit) {
+    for (const PlacedPart& placed : parts_) {
+      const auto visit_all = [&](const std::vector<Vec3d>& points) {
+        for (const Vec3d& point : points) visit(transform_point(placed.to_world, point));
+      };
+      if (!placed.is_moving) {
+        std::vector<Vec3d>& points = standing_points_[placed.part];
+        if (points.empty()) points = points_of(placed.part, nullptr);
+        visit_all(points);
       }
+      for (int i = 0; placed.is_moving && i < poses; ++i) {
+        const GltfState state = motion_->at(double(i) / std::max(poses - 1, 1));
+        visit_all(points_of(placed.part, &state));
+      }
+    }
+  }
+
+  /// The vertices of triangles.
+  std::vector<Vec3d> points_of(const std::string& part_name, const GltfState* state) const {
+    const GltfPart part = read_gltf_part(gltf_, part_name, MeshUvs::unread, state);
+    std::vector<char> is_used(part.positions.size());
+    for (const auto& triangle : part.triangles)
+      for (const std::uint32_t v : triangle) is_used[v] = 1;
+    std::vector<Vec3d> points;
+    points.reserve(part.positions.size());
+    for (std::size_t v = 0; v < is_used.size(); ++v)
+      if (is_used[v] != 0) points.push_back(part.positions[v]);
+    return points;
   }
 
   /// The extent belongs to the first pose; the default camera frames the motion.
@@ -363,6 +378,7 @@ class GltfImporter {
       surfaces_;  // by material, its set of UVs, and presence of UVs and tangents
   std::set<std::size_t> told_meshes_;
   std::vector<PlacedPart> parts_;
+  std::map<std::string, std::vector<Vec3d>> standing_points_;  // by part
 };
 
 }  // namespace

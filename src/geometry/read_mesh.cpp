@@ -28,11 +28,12 @@ std::string known_extensions() {
   return list;
 }
 
-/// Rejects a file far longer than its mesh, or than memory, before reading it.
+/// Rejects an empty file, and one far longer than its mesh, or than memory, before reading it.
 void check_size(const std::string& path, const InputFile& file) {
   constexpr std::uintmax_t spare = 1 << 20;  // programs append notes of their own
   constexpr std::uintmax_t header = 1 << 12;
   const std::uintmax_t size = file.size();
+  if (size == 0) throw bad_file(path, "the mesh file is empty");
   const MeshFormat* format = find_mesh_format(path);
   const bool may_announce = format != nullptr && format->announced_length != nullptr;
   const std::uintmax_t announced = may_announce ? format->announced_length(file.read(0, header)) : 0;
@@ -69,7 +70,6 @@ void clear_uvs_not_finite(const std::string& path, SourceMesh& mesh) {
 
 std::string read_mesh_bytes(const std::string& path) {
   const InputFile file(path, "mesh file", did_you_mean_file);
-  if (file.size() == 0) throw bad_file(path, "the mesh file is empty");
   check_size(path, file);
   return file.read_all();
 }
@@ -100,7 +100,9 @@ SourceMesh read_mesh(const std::string& path, const std::string& part, MeshUvs u
     throw bad_file(path, "the format has no parts", "no \"part\"", '"' + part + '"');
   if (pose && format->read_posed == nullptr)
     throw bad_file(path, "the format has no animations", "no \"animation_time\"");
-  std::string bytes = read_mesh_bytes(path);
+  const InputFile file(path, "mesh file", did_you_mean_file);
+  check_size(path, file);
+  std::string bytes = names_no_files(path) ? file.read_all() : "";  // others are read with their files
   SourceMesh mesh = pose           ? format->read_posed(path, part, pose, uvs)
                     : part.empty() ? format->read(path, bytes, uvs)
                                    : format->read_part(path, part, bytes, uvs);

@@ -22,6 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Everything that a scene file or an asset says. The description of an OBJ depends on its libraries of materials, too.
+std::string description_of(const std::string& path) {
+  if (!is_asset_name(path)) return InputFile(path, "scene file").read_all();
+  return names_no_files(path) ? import_asset(path, "").text : mesh_contents(path);
+}
+
 std::string contents_of(const Shape& shape, const std::string& path) {
   try {
     return mesh_contents(path);
@@ -65,7 +71,7 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
     hash.append(length.data(), length.size());
     hash.append(part.data(), part.size());
   };
-  add(is_asset_name(path) ? import_asset(path, "").text : InputFile(path, "scene file").read_all());
+  add(description_of(path));
   for (const std::string& text : overrides) add(text);
   std::set<std::string> seen;
   for (const Shape& shape : scene.shapes)

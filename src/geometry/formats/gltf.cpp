@@ -16,14 +16,11 @@ SourceMesh read_posed(const std::string& path, const std::string& part,
   SourceMesh mesh;
   mesh.positions = std::move(primitive.positions);
   mesh.normals = std::move(primitive.normals);
-  mesh.triangles.reserve(primitive.triangles.size());
-  for (const Triangle& triangle : primitive.triangles) {
+  mesh.collapsed = std::erase_if(primitive.triangles, [](const Triangle& triangle) {
     const auto& [a, b, c] = triangle;
-    if (a == b || b == c || c == a)
-      ++mesh.collapsed;
-    else
-      mesh.triangles.push_back(triangle);
-  }
+    return a == b || b == c || c == a;
+  });
+  mesh.triangles = std::move(primitive.triangles);
   give_uvs(mesh, primitive.uvs);
   if (!primitive.tangents.empty())
     for (const auto& [a, b, c] : mesh.triangles)
