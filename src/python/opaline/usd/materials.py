@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pxr import UsdGeom, UsdShade
+from pxr import UsdGeom
 
 from .networks import VERTEX_COLORS, Network, kind_of
 from .records import Surface
