@@ -7,6 +7,7 @@
 
 #include "asset_files/gltf_accessor.h"
 #include "asset_files/gltf_animation.h"
+#include "asset_files/gltf_instances.h"
 #include "asset_files/gltf_uv_set.h"
 #include "assets/asset_scene.h"
 #include "assets/gltf_material.h"
@@ -18,7 +19,7 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kMostInstances = 100000;  // each is a shape
+constexpr std::size_t kMostMoving = 1000;  // instances of a moving node: each has a mesh of its own
 
 bool is_finite(const Transform& t) {
   return is_finite(t.x) && is_finite(t.y) && is_finite(t.z) && is_finite(t.translation);
@@ -26,8 +27,8 @@ bool is_finite(const Transform& t) {
 
 /// A node of the scene with its transform; for an instanced mesh, the instance.
 struct PlacedNode {
-  std::size_t index, instance;
-  Transform to_world;
+  std::size_t index, instance, instances;
+  Transform to_world, to_node{};
 };
 
 /// Walks down from the scene's roots.
@@ -49,7 +50,7 @@ class NodeWalk {
         fail_at(gltf_.path, record_name("nodes", index), "has a position that is not finite");
       const GltfNode& node = gltf_.nodes[index];
       if (node.mesh != kNoRecord || node.camera != kNoRecord || node.light != kNoRecord)
-        placed.push_back({index, 0, above.back()});
+        placed.push_back({index, 0, 1, above.back()});
       push(node.children, depth + 1);
     }
     return placed;
@@ -156,41 +157,14 @@ class GltfImporter {
     const std::string label =
         node.name.empty() ? record_name("nodes", placed.index) : "node " + in_quotes(node.name);
     tell_mesh_losses(node.mesh);
-    if (motion_ && motion_->moves(std::uint32_t(placed.index)) && gltf_.instances.contains(placed.index))
-      scene_.warn(gltf_.path, label + ": its instances stand still; animation of instances is not supported");
-    const std::vector<Transform> all = instances(placed.index);
+    const std::vector<Transform> all = read_instances(gltf_, placed.index);
+    if (all.size() > kMostMoving && motion_ && motion_->moves(std::uint32_t(placed.index)))
+      scene_.warn(gltf_.path, fmt::format("{}: its {} instances stand still; at most {} can move", label,
+                                          all.size(), kMostMoving));
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t p = 0; p < gltf_.meshes[node.mesh].primitives.size(); ++p)
         if (has_triangles(node.mesh, p))
-          add_shape({placed.index, i, compose(placed.to_world, all[i])}, p, label);
-  }
-
-  /// EXT_mesh_gpu_instancing; a node without it is there once.
-  std::vector<Transform> instances(std::size_t node) const {
-    const auto found = gltf_.instances.find(node);
-    if (found == gltf_.instances.end()) return {Transform{}};
-    const GltfAttributes& attributes = found->second;
-    std::vector<Transform> all;
-    const auto for_each = [&](const char* name, const auto& read, const auto& use) {
-      const auto attribute = attributes.find(name);
-      if (attribute == attributes.end()) return;
-      if (gltf_.accessors[attribute->second].count > kMostInstances)
-        fail_at(gltf_.path, record_name("accessors", attribute->second), "has too many instances",
-                fmt::format("at most {}", kMostInstances),
-                std::to_string(gltf_.accessors[attribute->second].count));
-      const auto values = read(gltf_, attribute->second);
-      if (!all.empty() && values.size() != all.size())
-        fail_at(gltf_.path, record_name("accessors", attribute->second), "has the wrong number of instances",
-                std::to_string(all.size()), std::to_string(values.size()));
-      all.resize(values.size());
-      for (std::size_t i = 0; i < values.size(); ++i) use(all[i], values[i]);
-    };
-    for_each("ROTATION", read_quadruples, [](Transform& t, const auto& q) { t = rotation(q); });
-    for_each("SCALE", read_vectors, [](Transform& t, const Vec3d& s) {
-      t = {t.x * s.x, t.y * s.y, t.z * s.z, {}};
-    });
-    for_each("TRANSLATION", read_vectors, [](Transform& t, const Vec3d& p) { t.translation = p; });
-    return all;
+          add_shape({placed.index, i, all.size(), compose(placed.to_world, all[i]), all[i]}, p, label);
   }
 
   /// Reports a primitive without triangles once.
@@ -205,14 +179,17 @@ class GltfImporter {
     const GltfMesh& mesh = gltf_.meshes[node.mesh];
     const GltfPrimitive& primitive = mesh.primitives[p];
     const bool skinned = is_skinned(gltf_, placed.index, primitive),
-               is_moving = is_animated(placed.index, primitive);
+               is_moving = is_animated(placed, primitive);
     const Transform t = skinned || is_moving ? Transform{} : placed.to_world,
-                    stands = is_moving && !skinned ? motion_->first_place(placed.index) : t;
+                    stands = is_moving && !skinned
+                                 ? compose(motion_->first_place(placed.index), placed.to_node)
+                                 : t;
     if (!(std::abs(dot(normalized(stands.x), cross(normalized(stands.y), normalized(stands.z)))) > 1e-12))
       return scene_.warn(gltf_.path, label + ": its transform is singular; the mesh is ignored" +
                                          zero_scale_text(placed.index));
     std::string part = fmt::format("{}/{}", node.mesh, p);
     if (is_moving || is_posed(gltf_, placed.index, primitive)) part += fmt::format("/{}", placed.index);
+    if (is_moving && gltf_.instances.contains(placed.index)) part += fmt::format("/{}", placed.instance);
     const std::string name = shape_names_.take(node.name.empty() ? mesh.name : node.name, "shape");
     Json shape{{"name", name}, {"file", mesh_path_}, {"part", part}};
     if (is_moving) motion_->add_to_shape(shape);
@@ -239,11 +216,12 @@ class GltfImporter {
         is_faceted ? ", faceted: it has no normals (\"normals\": \"smooth\" computes them)" : ""));
   }
 
-  bool is_animated(std::size_t node, const GltfPrimitive& primitive) const {
-    if (!motion_ || gltf_.instances.contains(node)) return false;
-    if (!primitive.targets.empty() && motion_->changes_weights(std::uint32_t(node))) return true;
+  bool is_animated(const PlacedNode& placed, const GltfPrimitive& primitive) const {
+    const auto node = std::uint32_t(placed.index);
+    if (!motion_ || placed.instances > kMostMoving) return false;
+    if (!primitive.targets.empty() && motion_->changes_weights(node)) return true;
     return is_skinned(gltf_, node, primitive) ? motion_->moves_skin(gltf_.nodes[node].skin)
-                                              : motion_->moves(std::uint32_t(node));
+                                              : motion_->moves(node);
   }
 
   /// Primitives of one node with the same medium are one body.

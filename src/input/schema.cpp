@@ -101,7 +101,8 @@ std::vector<KeyInfo> shape_rows() {
       row("shape", "file", file, "", kFiniteNumber, "", mesh_file_meaning()),
       row("shape", "part", text, "", kFiniteNumber, "all of the file",
           "with `file`: one part of it. GLB and glTF (required): the indices `\"mesh/primitive\"`, or "
-          "`\"mesh/primitive/node\"` in the pose of that node. OBJ: the name of a material, for its faces"),
+          "`\"mesh/primitive/node\"` in the pose of that node, with `/instance` behind it for one of the "
+          "node's instances. OBJ: the name of a material, for its faces"),
       row("shape", "sphere", object, "", kFiniteNumber, "", "built-in sphere, see below"),
       row("shape", "box", object, "", kFiniteNumber, "", "built-in box"),
       row("shape", "quad", object, "", kFiniteNumber, "", "built-in parallelogram"),

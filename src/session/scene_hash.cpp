@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Everything that a scene file or an asset says. The description of an OBJ depends on its libraries of materials, too.
+/// Contents of a scene file, or of an asset and its files. The scene text of an OBJ includes its material libraries.
 std::string description_of(const std::string& path) {
   if (!is_asset_name(path)) return InputFile(path, "scene file").read_all();
   return names_no_files(path) ? import_asset(path, "").text : mesh_contents(path);

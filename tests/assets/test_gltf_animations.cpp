@@ -126,6 +126,32 @@ TEST(GltfAnimations, FramesShowNodesSkinsAndTargets) {
   expect_near(middle_at(morphed, 25), {1, 1, 2});
 }
 
+// Claim: instances of a moving node move with it, each at its own place in the node's turned space; a part names one.
+// By hand. Fails if: they stand still, all are the first, or an instance's transform is applied after the node's.
+TEST(GltfAnimations, InstancesMoveWithTheirNode) {
+  const float half = std::sqrt(.5f);
+  Asset asset = cube_mesh();
+  const int places = asset.accessor<float>("VEC3", kFloat, {0, 0, 0, 3, 0, 0});
+  asset.root(asset.node(
+      {{"mesh", 0},
+       {"rotation", {0, 0, half, half}},  // a quarter turn about z
+       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}}));
+  add_channel(asset, 0, "translation", {0, 1}, {0, 0, 0, 0, 0, 8});
+  const ScratchFolder folder;
+  const Scene scene = frame_of(asset, folder, 13);  // halfway
+  ASSERT_EQ(scene.shapes.size(), 2u);
+  EXPECT_TRUE(scene.warnings.empty());
+  const std::array<Vec3d, 2> middles{Vec3d(0, 0, 4), Vec3d(0, 3, 4)};
+  for (std::size_t i = 0; i < middles.size(); ++i) {
+    Vec3d low(1e300), high(-1e300);
+    for (const Vec3d& p : make_mesh(scene.shapes[i]).mesh.positions) widen(low, high, p / 1000);
+    expect_near((low + high) * .5, middles[i]);
+  }
+  Shape third = scene.shapes[1];
+  std::get<MeshFile>(third.source).part = "0/0/0/2";
+  EXPECT_THROW(make_mesh(third), Error);
+}
+
 // Claim: a body that an animation mirrors still faces outwards. Fails if: its triangles keep their winding: the volume is
 // below 0, and the mesh's check turns it with a warning.
 TEST(GltfAnimations, MirroredBodiesFaceOutwards) {

@@ -79,7 +79,7 @@ TEST(ErrorEstimate, IsWithinAFactorOfTwo) {
 TEST(ErrorEstimate, HoldsForAnyNumberOfRaysAPixel) {
   const std::vector<std::string> skin{"media.skin.sigma_s_prime=[20,20,20]", "settings.samples=4000"};
   Session references;
-  std::map<int, Session> sessions;  // one for each number of shadow rays, whose samples stay
+  std::map<int, Session> sessions;  // by the number of shadow rays, to reuse samples
   for (const int rays : {1, 16, 64}) {
     const std::vector<std::string> pixel{"film.samples_per_pixel=" + std::to_string(rays)};
     const Image truth =

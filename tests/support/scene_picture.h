@@ -18,7 +18,7 @@ inline Image picture_of(Session& session, const Scene& scene) {
   return session.render().image;
 }
 
-/// By a session that has seen nothing else.
+/// By a new session.
 inline Image cold_picture(const Scene& scene) {
   Session session;
   return picture_of(session, scene);
@@ -50,7 +50,7 @@ inline Image picture_of(Session& session, const ScratchFolder& folder, const std
       .picture.image;
 }
 
-/// By a session that has seen nothing else.
+/// By a new session.
 inline Image picture_of(const ScratchFolder& folder, const std::string& text,
                         const std::vector<std::string>& overrides = {}) {
   Session session;

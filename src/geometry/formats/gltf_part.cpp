@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "asset_files/gltf_accessor.h"
+#include "asset_files/gltf_instances.h"
 #include "asset_files/gltf_uv_set.h"
 #include "geometry/formats/gltf_pose.h"
 #include "geometry/formats/gltf_triangles.h"
@@ -21,7 +22,7 @@ constexpr double coordinate_limit = 1e18;
 
 struct PartIndex {
   std::size_t mesh, primitive;
-  std::optional<std::size_t> node;  ///< pose of this node
+  std::optional<std::size_t> node, instance;  ///< pose of this node, and its instance
 };
 
 std::string known_parts(const GltfModel& gltf) {
@@ -43,9 +44,10 @@ std::int64_t whole_number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? value : -1;
 }
 
-/// "mesh/primitive", or "mesh/primitive/node" for a node with this mesh; none: no such part.
+/// "mesh/primitive", "mesh/primitive/node" for a node with this mesh, or "mesh/primitive/node/instance"; none: no such
+/// part.
 std::optional<PartIndex> part_index(const GltfModel& gltf, std::string_view part) {
-  std::array<std::size_t, 3> numbers{};
+  std::array<std::size_t, 4> numbers{};
   std::size_t count = 0;
   for (bool has_more = true; has_more; ++count) {
     const std::size_t slash = std::min(part.find('/'), part.size());
@@ -55,11 +57,12 @@ std::optional<PartIndex> part_index(const GltfModel& gltf, std::string_view part
     has_more = slash < part.size();
     part.remove_prefix(slash + (has_more ? 1 : 0));
   }
-  const auto [mesh, primitive, node] = numbers;
+  const auto [mesh, primitive, node, instance] = numbers;
   if (count < 2 || mesh >= gltf.meshes.size() || primitive >= gltf.meshes[mesh].primitives.size()) return {};
-  if (count == 2) return PartIndex{mesh, primitive, {}};
+  if (count == 2) return PartIndex{mesh, primitive, {}, {}};
   if (node >= gltf.nodes.size() || gltf.nodes[node].mesh != mesh) return {};
-  return PartIndex{mesh, primitive, node};
+  if (count == 3) return PartIndex{mesh, primitive, node, {}};
+  return PartIndex{mesh, primitive, node, instance};
 }
 
 PartIndex find_part(const GltfModel& gltf, const std::string& part) {
@@ -234,7 +237,15 @@ GltfPart read_gltf_part(const GltfModel& gltf, const std::string& name, MeshUvs 
   read_colors(gltf, primitive, part);
   bool is_inside_out = false;
   if (index.node) {
-    is_inside_out = pose(gltf, *index.node, primitive, state, place, part);
+    std::optional<Transform> instance;
+    if (index.instance) {
+      const std::vector<Transform> all = read_instances(gltf, *index.node);
+      if (*index.instance >= all.size())
+        throw bad_file(gltf.path, "has no such instance", "below " + std::to_string(all.size()),
+                       '"' + name + '"');
+      instance = all[*index.instance];
+    }
+    is_inside_out = pose(gltf, *index.node, instance, primitive, state, place, part);
     check_positions(gltf, positions->second, part.positions);
   }
   TriangleList(gltf, primitive, place).read(part);

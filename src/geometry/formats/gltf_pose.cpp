@@ -214,14 +214,16 @@ bool is_posed(const GltfModel& gltf, std::size_t node, const GltfPrimitive& prim
           std::ranges::any_of(morph_weights(gltf, node, nullptr), [](double w) { return w != 0; }));
 }
 
-bool pose(const GltfModel& gltf, std::size_t node, const GltfPrimitive& primitive, const GltfState* state,
-          const std::string& place, GltfPart& part) {
+bool pose(const GltfModel& gltf, std::size_t node, const std::optional<Transform>& instance,
+          const GltfPrimitive& primitive, const GltfState* state, const std::string& place, GltfPart& part) {
   const std::vector<double>& weights = morph_weights(gltf, node, state);
   if (!primitive.targets.empty() && !weights.empty()) morph(gltf, weights, primitive, place, part);
   if (is_skinned(gltf, node, primitive))
     return skin(blended_joints(gltf, node, primitive, state, place, part), part);
-  if (state == nullptr) return false;
-  return skin(std::vector<Transform>(part.positions.size(), node_to_world(gltf, node, state)), part);
+  if (state == nullptr && !instance) return false;
+  Transform placed = instance.value_or(Transform{});
+  if (state != nullptr) placed = compose(node_to_world(gltf, node, state), placed);
+  return skin(std::vector<Transform>(part.positions.size(), placed), part);
 }
 
 }  // namespace opaline

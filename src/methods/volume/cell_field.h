@@ -55,7 +55,7 @@ class FittedCellField : public CellField {
   const CellFit& fit_;
 };
 
-/// Mean of the nearest cell, for gathered rays: their sum over a cell's hits is that of the interpolated field.
+/// Mean of the nearest cell, for gathered rays: the interpolated field has the same sum over a cell's hits.
 /// Without errors.
 class NearestCellField : public CellField {
  public:

@@ -98,7 +98,7 @@ void VolumeDiffusionMethod::plan(const PlanningInput& input, BodyPlan& body,
 
 BodyMemory VolumeDiffusionMethod::memory(const PlanningInput& input, const BodyPlan& body) const {
   // Bytes, fitted to bench_plan: per cell cutting the surface, exitance and error during the fits; per light,
-  // weights; with bounces, the gathered light and the exitance that it meets.
+  // weights; with bounces, the gathered light, and the exitance on its rays.
   constexpr std::size_t kCutSample = 680, kLight = 4, kBounces = 250;
   constexpr double kVaryingCell = 500;  // its own medium, and the flux to each neighbour
   const double in_wires =
