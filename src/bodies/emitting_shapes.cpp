@@ -36,7 +36,7 @@ double rounded_diagonal(const World& world) {
 }
 
 StageKey surface_key(const Scene& scene, const World& world, std::size_t shape) {
-  KeyBuilder key("emitting surface", 1);
+  KeyBuilder key("emitting surface", 2);
   const Mesh& mesh = world.meshes[shape];
   key.add_array(std::span(mesh.positions)).add_array(std::span(mesh.triangles));
   key.add(rounded_diagonal(world));

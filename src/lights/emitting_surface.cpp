@@ -52,6 +52,7 @@ EmittingSurface::EmittingSurface(World world, Texels texels, std::uint64_t hash,
       clearance_(clearance),
       box_(bounds(world_.meshes[0])) {
   const Mesh& mesh = world_.meshes[0];
+  for (const Vec3d& position : mesh.positions) radius_ = std::max(radius_, length(position - center()));
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3d corner = mesh.positions[a], u = mesh.positions[b] - corner, v = mesh.positions[c] - corner;
     faces_.push_back({Vec3f(corner), Vec3f(u), Vec3f(v), .5 * length(cross(u, v)), 0, 1});

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -45,6 +46,15 @@ class EmittingSurface {
   float clearance() const { return clearance_; }
   std::uint64_t hash() const { return hash_; }
   const Bounds& box() const { return box_; }
+  double area() const { return area_; }
+  /// Bounding sphere around the middle of the box.
+  Vec3d center() const { return .5 * (box_.low + box_.high); }
+  double radius() const { return radius_; }
+  /// True without a texture, if rays through the bounding sphere mostly meet the surface.
+  bool is_round() const {
+    constexpr double kLeastFilled = .5;
+    return !texels_ && .25 * area_ > kLeastFilled * std::numbers::pi * radius_ * radius_;
+  }
 
  private:
   Point point_of(std::uint32_t triangle, float u, float v) const;
@@ -55,7 +65,7 @@ class EmittingSurface {
   Texels texels_;
   std::uint64_t hash_;
   float clearance_;
-  double area_ = 0;
+  double area_ = 0, radius_ = 0;
   Bounds box_;
   struct Face {
     Vec3f corner, u, v;

@@ -72,7 +72,8 @@ bool is_visible(const Light& light) {
 }
 
 bool is_of_shape(const Light& light) {
-  return std::holds_alternative<ShapeLight>(light.source);
+  const auto* many = std::get_if<ManyLights>(&light.source);
+  return std::holds_alternative<ShapeLight>(many != nullptr ? many->tree->lights()[0].source : light.source);
 }
 
 bool share_rays(const Light& a, const Light& b) {

@@ -14,7 +14,7 @@ namespace opaline {
 
 class LampTable;
 
-/// Point, spot, sphere and quad lights in a binary tree. Each node bounds the positions, directions and
+/// Point, spot, sphere and quad lights, or emitting shapes, in a binary tree. Each node bounds the positions, directions and
 /// intensities of its lights. These bounds give the importance of a node at a point: the unshadowed
 /// contribution of its lights, positive wherever one of them contributes. Lights are sampled by importance. A
 /// light with an expected number of n draws has the weight 1 / n for each draw, so the estimate is unbiased.

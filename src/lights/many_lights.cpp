@@ -14,11 +14,12 @@ bool is_dark(const Light& light) {
 }
 
 /// A tree contains lights of one kind.
-constexpr std::array<const char*, 3> kKinds{"many lights without an area", "many lights with an area",
-                                            "many lights with an area that the camera does not see"};
+constexpr std::array<const char*, 4> kKinds{"many lights without an area", "many lights with an area",
+                                            "many lights with an area that the camera does not see",
+                                            "many emitting shapes"};
 
 std::size_t kind_of(const Light& light) {
-  return is_delta(light) ? 0 : light.is_seen ? 1 : 2;
+  return is_of_shape(light) ? 3 : is_delta(light) ? 0 : light.is_seen ? 1 : 2;
 }
 
 /// Lights for trees, by kind.

@@ -7,6 +7,7 @@
 
 #include "lights/emitting_surface.h"
 #include "lights/light_kind.h"
+#include "lights/sphere_light.h"
 
 namespace opaline {
 
@@ -24,12 +25,34 @@ inline ShapeLight recentred(ShapeLight light, const Vec3d&, double) {
   return light;  // by light_in_world
 }
 
-// Shadow rays end before the surface, which would block those at grazing angles.
-inline LightSample sample_channels(const ShapeLight& light, const Vec3f& point, const Vec3f&,
-                                   std::array<double, 2> unit_square, int samples, RgbF& weights) {
+/// Its bounding sphere, if directions to it are sampled in the sphere's cone: from outside of a shape that fills it well.
+inline std::optional<SphereLight> sampled_ball(const ShapeLight& light, const Vec3f& point) {
+  const EmittingSurface& surface = *light.surface;
+  const Vec3d to = surface.center() - Vec3d(point);
+  if (!surface.is_round() || dot(to, to) <= surface.radius() * surface.radius()) return {};
+  return SphereLight{surface.center(), surface.radius(), {}};
+}
+
+/// Shadow rays end before the surface, which would block those at grazing angles.
+/// distance: to the surface; cosine: with its normal there
+inline float cleared(const EmittingSurface& surface, double distance, double cosine) {
   constexpr double kMostCleared = .5;  // part of the distance
+  return float(distance - std::min(double(surface.clearance()) / cosine, kMostCleared * distance));
+}
+
+inline LightSample sample_channels(const ShapeLight& light, const Vec3f& point, const Vec3f& normal,
+                                   std::array<double, 2> unit_square, int samples, RgbF& weights) {
   weights = RgbF(0);
   if (light.surface == nullptr) return {};
+  if (const std::optional<SphereLight> ball = sampled_ball(light, point)) {
+    LightSample sample = sample_light(*ball, point, normal, unit_square, samples);
+    float distance = std::numeric_limits<float>::infinity();
+    const auto met = light.surface->first_met(point, sample.direction, light.surface->clearance(), distance);
+    if (!met) return {sample.direction, sample.distance};
+    sample.distance = cleared(*light.surface, double(distance), -double(dot(met->normal, sample.direction)));
+    weights = RgbF(sample.weight);
+    return sample;
+  }
   const EmittingSurface::Point emitter = light.surface->sample(unit_square);
   const Vec3d to(emitter.position - point);
   const double d2 = dot(to, to), distance = std::sqrt(d2), facing = -dot(to, Vec3d(emitter.normal));
@@ -37,8 +60,7 @@ inline LightSample sample_channels(const ShapeLight& light, const Vec3f& point, 
   LightSample sample{Vec3f(to / distance), float(distance)};
   if (!(facing > 0)) return sample;
   const double cosine = facing / distance;
-  sample.distance =
-      float(distance - std::min(double(light.surface->clearance()) / cosine, kMostCleared * distance));
+  sample.distance = cleared(*light.surface, distance, cosine);
   weights = light.surface->texel(emitter) * float(cosine / (d2 * emitter.density * samples));
   sample.weight = channel_of(weights, light.channel);
   return sample;
@@ -50,12 +72,14 @@ inline LightSample sample_light(const ShapeLight& light, const Vec3f& point, con
   return sample_channels(light, point, normal, unit_square, samples, weights);
 }
 
-inline float sampling_density(const ShapeLight& light, const Vec3f& point, const Vec3f&,
+inline float sampling_density(const ShapeLight& light, const Vec3f& point, const Vec3f& normal,
                               const Vec3f& direction) {
   if (light.surface == nullptr) return 0;
   float distance = std::numeric_limits<float>::infinity();
   const auto met = light.surface->first_met(point, direction, light.surface->clearance(), distance);
   if (!met) return 0;
+  if (const std::optional<SphereLight> ball = sampled_ball(light, point))
+    return sampling_density(*ball, point, normal, direction);
   const double cosine = -double(dot(met->normal, direction));
   return float(met->density * double(distance) * double(distance) / cosine);
 }
@@ -82,8 +106,12 @@ inline LightExtent extent(const ShapeLight& light) {
   return {.center = .5 * (box.low + box.high), .radius = radius, .width = 2 * radius};
 }
 
-inline std::optional<Lamp> lamp_of(const ShapeLight&) {
-  return {};
+// Without a texture: trees have no texels.
+inline std::optional<Lamp> lamp_of(const ShapeLight& light) {
+  if (light.channel) return {};
+  if (light.surface == nullptr) return Lamp{};
+  const EmittingSurface& surface = *light.surface;
+  return Lamp{.center = surface.center(), .radius = surface.radius(), .intensity = .25 * surface.area()};
 }
 
 inline std::vector<double> geometry(const ShapeLight& light) {

@@ -8,6 +8,7 @@
 
 #include "bodies/surface_boundaries.h"
 #include "core/random.h"
+#include "lights/light_tree.h"
 #include "lights/shape_light.h"
 #include "render/bounced_light.h"
 #include "render/camera_rays.h"
@@ -77,10 +78,16 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
     input.view->set_fields(fields_.of_mesh, boundaries);
   }
   for (const Light& light : lights_) emitted_.emplace_back(emission(light));
+  const auto add_emission = [&](const Light& light) {
+    const auto& of_shape = std::get<ShapeLight>(light.source);
+    emitted_by_.resize(input.scene.shapes.size());
+    emitted_by_[of_shape.shape].push_back(of_shape);
+  };
   for (const Light& light : lights_)
-    if (const auto* of_shape = std::get_if<ShapeLight>(&light.source)) {
-      emitted_by_.resize(input.scene.shapes.size());
-      emitted_by_[of_shape->shape].push_back(*of_shape);
+    if (const auto* many = std::get_if<ManyLights>(&light.source); many != nullptr && is_of_shape(light)) {
+      if (many->channel.value_or(0) == 0) std::ranges::for_each(many->tree->lights(), add_emission);
+    } else if (is_of_shape(light)) {
+      add_emission(light);
     } else if (is_visible(light)) {
       met_.add(light);
       if (light.is_seen) seen_.add(light);

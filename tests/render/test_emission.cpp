@@ -95,6 +95,49 @@ TEST(Emission, LightsAsAQuadLight) {
   }
 }
 
+/// A floor, a translucent ball and 30 lamps of two colours; only those with an index in [begin, end) are lit.
+std::string among_lamps(int begin, int end, const std::string& settings) {
+  std::string shapes =
+      R"({"quad": {"corner": [-40, 0, 40], "u": [80, 0, 0], "v": [0, 0, -80]}, "reflectance": 0.6, "specular_roughness": 0.3},
+         {"sphere": {"center": [0, 8, 0], "radius": 8}, "medium": "wax"})";
+  for (int i = 0; i < 30; ++i) {
+    const double angle = 2 * M_PI * i / 30;
+    shapes += R"(, {"sphere": {"radius": 1, "center": [)" + std::to_string(20 * std::cos(angle)) + ", " +
+              std::to_string(i % 3 == 0 ? 3 : 6) + ", " + std::to_string(20 * std::sin(angle)) +
+              R"(]}, "reflectance": 0, "emission": )" +
+              (i < begin || i >= end ? "0}"
+               : i % 2 == 0          ? "[6, 4, 2]}"
+                                     : "[2, 4, 6]}");
+  }
+  return R"({"media": {"wax": {"sigma_a": 0.02, "sigma_s_prime": 2}}, "shapes": [)" + shapes +
+         R"(], "camera": {"position": [0, 45, 60], "look_at": [0, 0, 0], "field_of_view": 50},
+         "film": {"resolution": [24, 24], "pixel_type": "float"}, "settings": {"bounces": 0, )" +
+         settings + "}}";
+}
+
+// Claim: more than 16 emitting shapes are sampled by a tree, and light an image as the sum of their halves, each traced, does:
+// a glossy floor, a translucent ball, and the lamps themselves. Tolerance: .5 % of the image's mean (its noise: .1 %), and of the
+// lamps' pixels 1e-5. Fails if: the tree's densities are wrong, lamps are missing in reflections or to the camera, or their
+// colours are those of others.
+TEST(Emission, OfManyShapesIsTheSumOfTheHalves) {
+  const ScratchFolder folder;
+  for (const std::string settings :
+       {R"("method": "lambert")", R"("method": "hierarchical", "samples": 500)"}) {
+    const auto image = [&](int begin, int end) {
+      return picture_of(folder, among_lamps(begin, end, settings));
+    };
+    const Image all = image(0, 30), first = image(0, 15), second = image(15, 30);
+    for (const std::string name : {"R", "G", "B"}) {
+      const double sum = mean_of_channel(first, name) + mean_of_channel(second, name);
+      EXPECT_NEAR(mean_of_channel(all, name), sum, .005 * sum) << settings << ' ' << name;
+    }
+    double brightest = 0;
+    for (int y = 0; y < all.height; ++y)
+      for (int x = 0; x < all.width; ++x) brightest = std::max(brightest, double(channel(all, x, y, "R")));
+    EXPECT_NEAR(brightest, 6, 6e-5);
+  }
+}
+
 // Claim: an emission adds its radiance to what a translucent ball sends out, and nothing else: a convex surface does not
 // light itself. Source: by hand. Tolerance: 1e-5. Fails if: emission replaces the light from inside, or shines into its own
 // body.
