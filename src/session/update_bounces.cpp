@@ -138,7 +138,6 @@ std::vector<std::vector<RgbF>> Session::State::gathered_bounces(std::span<BodySt
       for (std::size_t i = 0; i < all[b].size(); ++i)
         all[b][i] += component_max(all[b][i] - before[b][i], RgbF{}) * rest;
   }
-  for (BodyStages& stages : bodies) method_of(stages.body.plan.method).remove_bounced(stages);
   return all;
 }
 

@@ -150,6 +150,15 @@ TEST(GltfAnimations, InstancesMoveWithTheirNode) {
   Shape third = scene.shapes[1];
   std::get<MeshFile>(third.source).part = "0/0/0/2";
   EXPECT_THROW(make_mesh(third), Error);
+
+  // Each has a mesh of its own: too many stand still, and a warning says so.
+  const std::vector<float> many(3 * 1001);
+  asset.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+      asset.accessor<float>("VEC3", kFloat, many);
+  const Scene crowd = frame_of(asset, folder, 13);
+  EXPECT_EQ(crowd.shapes.size(), 1001u);
+  ASSERT_EQ(crowd.warnings.size(), 1u);
+  EXPECT_NE(crowd.warnings[0].find("its 1001 instances stand still"), std::string::npos) << crowd.warnings[0];
 }
 
 // Claim: a body that an animation mirrors still faces outwards. Fails if: its triangles keep their winding: the volume is

@@ -97,8 +97,9 @@ TEST(CliReport, FolderIsWholeAndKept) {
 // Claim: --truth adds a scene of its own to every form of the report: rows whose halves are random walks, the same body as
 // the scene's, lambert first; volume_diffusion is nearer to them than the scene's own profile, and lambert farther; the
 // rows of the scene itself are those of a report without it, and a second time nothing is walked again. Source: the help of
-// bench (and of the stages, bounces and diffusion, that its rows can name); a ball of 30 mean free paths, as
-// of marble in blue, where the models are 17 % and below 5 % off. Tolerance: a factor of two. Fails if: the halves are `direct`'s, or the profile of a rung is not set.
+// bench (and of the stages, bounces and diffusion, that its rows can name); a ball of 30 mean free paths, grey
+// like the blue of marble, where the models are 17 % and below 5 % off here. Tolerance: a factor of two. Fails if: the halves
+// are `direct`'s, or the profile of a rung is not set.
 TEST(CliReport, AgainstRandomWalks) {
   const SceneFolder folder;
   // Equal channels are walked once.

@@ -17,7 +17,7 @@ constexpr int kSide = 16;
 // Between things surfaces are lit as methods know best, where parts are not added up.
 const std::vector<std::string> kAlone{"settings.bounces=0"};
 
-// Enough where both sides of a comparison have the same random numbers.
+// Enough if both sides of a comparison have the same random numbers.
 const std::string kFewSamples = "settings.samples=300";
 
 const std::vector<std::string> kAllMethods{"lambert", "hierarchical", "direct", "volume_diffusion", "volume"};

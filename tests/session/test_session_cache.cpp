@@ -88,6 +88,25 @@ TEST(SessionCache, DiffusionOfBouncedLightIsFound) {
   EXPECT_FALSE(same_pixels(cold_picture(scene), cold_picture(red)));
 }
 
+// Claim: it is found after an image without bounces, too, and the points of the image gather the light of the body. Fails if:
+// these meet a state that only a gathering of this session would have made.
+TEST(SessionCache, BouncesAreFoundAfterAnImageWithoutThem) {
+  const ScratchFolder folder;
+  Scene without = two_balls();
+  without.settings.method = Method::volume_diffusion;
+  Scene with = without;
+  with.settings.bounces = 1;
+  for (int run = 0; run < 2; ++run) {
+    StageCache cache(folder.path.string());
+    Session session(&cache);
+    if (run == 1) {
+      EXPECT_TRUE(same_pixels(picture_of(session, without), cold_picture(without)));
+    }
+    EXPECT_TRUE(same_pixels(picture_of(session, with), cold_picture(with)));
+    EXPECT_EQ(session.work().found > 0, run == 1);
+  }
+}
+
 // Claim: a spoiled entry costs its stage alone and one warning; the picture is the same. Source: session.h.
 // Fails if: the result is computed but the key's entry not replaced (the second time warns again).
 TEST(SessionCache, SpoiledEntry) {

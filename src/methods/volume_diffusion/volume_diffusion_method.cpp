@@ -99,17 +99,22 @@ std::vector<RgbF> with_bounced(const VolumeDiffusionState& state, std::span<cons
   return all;
 }
 
-/// Makes gathered rays meet this exitance.
-void set_seen(BodyStages& stages, std::vector<RgbF> exitance) {
-  auto& state = state_of<VolumeDiffusionState>(stages.body);
-  stages.store.get(state.nearest, stages.keys.samples_key, [&] {
+CellMeans means_of(const BodyStages& stages, std::vector<RgbF> exitance) {
+  auto& nearest = state_of<VolumeDiffusionState>(stages.body).nearest;
+  stages.store.get(nearest, stages.keys.samples_key, [&] {
     // Cells cut to slivers are inaccurate, and they are the nearest to larger areas than theirs.
     constexpr double kLeastArea = .2;
     return std::make_shared<const NearestSample>(
         NearestSample::by_centroids(stages.body.surface.samples, 1, kLeastArea));
   });
-  state.seen = {state.nearest.value, std::move(exitance)};
+  return {nearest.value, std::move(exitance)};
+}
+
+/// Makes gathered rays meet this exitance.
+void set_seen(BodyStages& stages, std::vector<RgbF> exitance) {
+  auto& state = state_of<VolumeDiffusionState>(stages.body);
   state.fit = nullptr;
+  state.seen = means_of(stages, std::move(exitance));
 }
 
 void set_fit(BodyStages& stages, std::span<const RgbF> exitance) {
@@ -137,14 +142,13 @@ void VolumeDiffusionMethod::prepare(BodyStages& stages) const {
         return update_cells(stages).exitance(stages.lights, body.transfers, body.entering,
                                              stages.input.monitor);
       });
-  const bool has_bounced = state.bounced.key != StageKey{};
-  if (!gathers_light(stages.input.scene, body.plan)) {
+  const bool has_bounced = state.bounced.key != StageKey{},
+             gathers = gathers_light(stages.input.scene, body.plan);
+  if (source != ResultSource::reused || (has_bounced && !gathers)) {
     state.bounced = {};
-    if (source != ResultSource::reused || has_bounced || state.fit == nullptr)
-      set_fit(stages, state.direct.value.exitance);
-  } else if (source != ResultSource::reused) {
-    remove_bounced(stages);
+    state.fit = nullptr;
   }
+  if (!gathers && state.fit == nullptr) set_fit(stages, state.direct.value.exitance);
   stages.note("diffusion", source, has_cells ? "solved on the existing cells" : "solved");
 }
 
@@ -188,7 +192,7 @@ void VolumeDiffusionMethod::add_for_gathering(BodyStages& stages, std::span<cons
 std::unique_ptr<MethodState> VolumeDiffusionMethod::direct_state(const BodyStages& stages) const {
   auto direct = std::make_unique<VolumeDiffusionState>();
   const VolumeDiffusionState& state = volume_diffusion_state(stages.body);
-  direct->seen = {state.nearest.value, state.direct.value.exitance};
+  direct->seen = means_of(stages, state.direct.value.exitance);
   return direct;
 }
 
