@@ -22,12 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Contents of a scene file, or of an asset and its files. The scene text of an OBJ includes its material libraries.
-std::string description_of(const std::string& path) {
-  if (!is_asset_name(path)) return InputFile(path, "scene file").read_all();
-  return names_no_files(path) ? import_asset(path, "").text : mesh_contents(path);
-}
-
 std::string contents_of(const Shape& shape, const std::string& path) {
   try {
     return mesh_contents(path);
@@ -71,9 +65,16 @@ std::string scene_hash(const std::string& path, const std::vector<std::string>& 
     hash.append(length.data(), length.size());
     hash.append(part.data(), part.size());
   };
-  add(description_of(path));
-  for (const std::string& text : overrides) add(text);
   std::set<std::string> seen;
+  if (!is_asset_name(path)) {
+    add(InputFile(path, "scene file").read_all());
+  } else if (names_no_files(path)) {
+    add(import_asset(path, "").text);  // with the material libraries of an OBJ
+  } else {
+    add(mesh_contents(path));
+    seen.insert(path);
+  }
+  for (const std::string& text : overrides) add(text);
   for (const Shape& shape : scene.shapes)
     if (const auto* mesh = std::get_if<MeshFile>(&shape.source))
       if (seen.insert(mesh->path).second) add(contents_of(shape, mesh->path));
