@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
+#include <utility>
 
 #include "core/lower_case.h"
 #include "opaline/error.h"
@@ -56,6 +58,31 @@ std::string listed(const std::vector<std::string>& channels) {
   return text + (channels.size() > kMost ? ", ..." : "");
 }
 
+bool are_same(const RgbPrimaries& a, const RgbPrimaries& b) {
+  constexpr double kRounding = 1e-4;  // rounding of primaries given with four digits
+  for (const auto& [x, y] : {std::pair(a.red, b.red), std::pair(a.green, b.green), std::pair(a.blue, b.blue),
+                             std::pair(a.white, b.white)})
+    if (!(std::abs(x[0] - y[0]) < kRounding && std::abs(x[1] - y[1]) < kRounding)) return false;
+  return true;
+}
+
+std::string text_of(const RgbPrimaries& p) {
+  std::ostringstream text;
+  const char* before = "";
+  for (const auto& [name, xy] : {std::pair("red", p.red), std::pair("green", p.green),
+                                 std::pair("blue", p.blue), std::pair("white", p.white)}) {
+    text << before << name << ' ' << xy[0] << ' ' << xy[1];
+    before = ", ";
+  }
+  return text.str();
+}
+
+bool is_finite_matrix(const ColorMatrix& matrix) {
+  constexpr double kMost = 1e3;  // maximum weights, exceeded by nearly collinear primaries
+  return std::ranges::all_of(
+      matrix, [](const Vec3d& row) { return max_component(component_max(row, -row)) < kMost; });
+}
+
 }  // namespace
 
 ChannelPlaces channel_places(const std::vector<std::string>& channels, const std::string& path) {
@@ -81,6 +108,11 @@ bool is_color_channel(std::string_view channel) {
   const std::string component = component_of(channel);
   return component == "y" || is_color_word(component, 0) || is_color_word(component, 1) ||
          is_color_word(component, 2);
+}
+
+Error integer_colors(const std::string& path, const std::string& channel) {
+  return bad_file(path, "the channel " + channel + " stores integers (UINT), which are not colours",
+                  "channels of type HALF or FLOAT");
 }
 
 bool is_matte_channel(std::string_view channel) {
@@ -119,6 +151,16 @@ void convert_colors(std::span<float> pixels, std::size_t step, std::span<const C
       for (std::size_t c = 0; c < 3; ++c)
         pixels[i + places[c]] = float(is_variance ? color[c] * color[c] : color[c]);
     }
+}
+
+std::optional<ColorMatrix> matrix_to_rec709(const RgbPrimaries& primaries, const std::string& path) {
+  if (are_same(primaries, kRec709Primaries)) return {};
+  if (are_same(primaries, kAp1Primaries)) return from_acescg();
+  const ColorMatrix matrix = color_matrix(primaries, kRec709Primaries);
+  if (!is_finite_matrix(matrix))
+    throw bad_file(path, "has chromaticities that span no colour space",
+                   "red, green and blue not on one line, and white between them", text_of(primaries));
+  return matrix;
 }
 
 const ColorMatrix& to_acescg() {

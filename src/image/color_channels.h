@@ -3,12 +3,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/rgb_primaries.h"
+#include "opaline/error.h"
 
 namespace opaline {
 
@@ -35,6 +37,9 @@ ChannelPlaces channel_places(const std::vector<std::string>& channels, const std
 /// True for the names of R, G, B and Y, of any layer.
 bool is_color_channel(std::string_view channel);
 
+/// Complaint of a channel of 32-bit integers used as a colour.
+Error integer_colors(const std::string& path, const std::string& channel);
+
 /// True for channels of Cryptomatte: names and coverages, not colours.
 bool is_matte_channel(std::string_view channel);
 /// True for a layer of one light's contribution: "diffuse_NAME", "specular_NAME", "emission_NAME".
@@ -45,6 +50,9 @@ bool is_light_group(std::string_view layer);
 void convert_colors(std::span<float> pixels, std::size_t step, std::span<const ColorChannels> colors,
                     const ColorMatrix& matrix);
 
+/// Matrix from a file's primaries to Rec.709; empty: those of Rec.709.
+/// error Error{bad_input} naming the file: the primaries do not span a colour space
+std::optional<ColorMatrix> matrix_to_rec709(const RgbPrimaries& primaries, const std::string& path);
 const ColorMatrix& to_acescg();
 const ColorMatrix& from_acescg();
 

@@ -5,6 +5,7 @@
 
 #include "image/color_channels.h"
 #include "image/exr_chunks.h"
+#include "image/picture_size.h"
 #include "image/png_chunks.h"
 #include "image/tiff_strips.h"
 #include "opaline/error.h"
@@ -12,13 +13,12 @@
 namespace opaline {
 namespace {
 
-/// Largest ratio of floats in memory to bytes in the file: bounds the most compressible images of each format
-/// (constant DWA and ZIP EXRs, one-bit palette PNGs, progressive JPEGs of empty blocks) with a margin. A constant WebP has
-/// no bits per pixel, and is refused if large.
+// Constant and one-bit palette PNGs, progressive JPEGs of empty blocks, with a margin. A constant WebP has no
+// bits per pixel, and is refused if large.
 double densest(const OIIO::ImageSpec& spec, std::string_view format) {
   if (format == "png" || format == "webp") return 131072;
   if (format == "jpeg" || format == "tiff") return 16384;
-  return spec.get_string_attribute("compression").substr(0, 3) == "dwa" ? 32768 : 2048;
+  return densest_exr(spec.get_string_attribute("compression").substr(0, 3) == "dwa");
 }
 
 std::string one_line(std::string message) {
@@ -42,36 +42,20 @@ std::string_view format_of(const PictureBytes& bytes) {
                                                                                                     : "";
 }
 
-// Memory of the libraries besides the image: rows of OpenImageIO (256, even for fewer) and of OpenEXR (32 per
-// thread).
 void check_size(const std::string& path, const OIIO::ImageSpec& spec, std::string_view format,
                 std::uintmax_t file_size) {
-  if (spec.width < 1 || spec.height < 1)  // Radiance files may have any sign
-    throw bad_file(path, "has no pixels", "a width and height of at least 1",
-                   std::to_string(spec.width) + " x " + std::to_string(spec.height));
-  constexpr double always_allowed = 512 << 20, rows_beside = 1024;
-  const double claimed =
-      sizeof(float) * static_cast<double>(spec.width) * (spec.height + rows_beside) * spec.nchannels;
-  if (claimed > densest(spec, format) * static_cast<double>(file_size) + always_allowed)
-    throw bad_file(path, "the file is too short for the size it claims", {},
-                   std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
-  // Small files may have any size: constant images are highly compressible, but decoding takes time and
-  // memory.
-  constexpr double most_pixels = 1 << 29;
-  const int width = std::max(spec.width, spec.full_width), height = std::max(spec.height, spec.full_height);
-  if (double(width) * height > most_pixels)
-    throw bad_file(path, "the image is too large", "at most 537 million pixels, such as 32,768 x 16,384",
-                   std::to_string(width) + " x " + std::to_string(height) + ", " +
-                       std::to_string(std::int64_t(1e-6 * width * height)) + " million; make it smaller");
+  check_picture_size(
+      path,
+      {spec.width, spec.height, spec.nchannels, spec.full_width, spec.full_height, densest(spec, format)},
+      file_size);
 }
 
-/// Refuses colours of 32-bit integers in an EXR: identifiers, which OpenImageIO divides by 4294967295.
+/// Refuses integer_colors in an EXR, which OpenImageIO divides by 4294967295.
 void check_color_types(const std::string& path, const OIIO::ImageSpec& spec) {
   for (int c = 0; c < spec.nchannels; ++c) {
     const std::string& name = spec.channelnames[std::size_t(c)];
     if (spec.channelformat(c) == OIIO::TypeUInt32 && (spec.nchannels == 1 || is_color_channel(name)))
-      throw bad_file(path, "the channel " + name + " stores integers (UINT), which are not colours",
-                     "channels of type HALF or FLOAT");
+      throw integer_colors(path, name);
   }
 }
 

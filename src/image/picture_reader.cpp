@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "image/color_channels.h"
-#include "image/exr_chunks.h"
 #include "image/picture_file.h"
 #include "image/texel_colors.h"
 #include "opaline/error.h"
@@ -22,8 +21,8 @@ namespace {
 void copy_metadata(const OIIO::ImageSpec& spec, Image& image) {
   for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
     const std::string_view name(attribute.name().data(), attribute.name().size());
-    if (attribute.type() != OIIO::TypeString || name.starts_with("oiio:") || name.starts_with("openexr:") ||
-        name == "compression" || name == "Software" || name == "DateTime" || name == "colorInteropID")
+    if (attribute.type() != OIIO::TypeString || name.starts_with("oiio:") || name == "compression" ||
+        name == "Software" || name == "DateTime")
       continue;
     image.metadata.emplace_back(name, attribute.get_string());
   }
@@ -53,17 +52,15 @@ void linearize(Image& image, int alpha) {
 }  // namespace
 
 Image read_picture(const std::string& path) {
-  constexpr std::string_view formats[] = {"exr", "hdr", "png"};
+  constexpr std::string_view formats[] = {"exr", "hdr", "png"};  // EXR: see read_exr.h
   const PictureSource source{path, {}};
   check_is_whole(source);
   const OpenPicture picture = open_picture(source, formats);
-  if (picture.format == "exr") check_exr_chunks(path);
   OIIO::ImageInput& input = *picture.input;
   const OIIO::ImageSpec& spec = input.spec();
   Image image = describe(spec);
   image.pixels.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
                       image.channels.size());
-  // Detects a truncated EXR, accepted on opening.
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
     throw bad_file(path, "the image is damaged: " + complaint_of(&input));
   if (picture.format == "png") linearize(image, spec.alpha_channel);

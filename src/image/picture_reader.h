@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// As read_image.
+/// As read_image, for other formats than EXR.
 using ReadPicture = Image (*)(const std::string& path);
 
 }  // namespace opaline

@@ -4,8 +4,10 @@
 #include <new>
 #include <string>
 
+#include "core/input_file.h"
 #include "image/picture_module.h"
 #include "image/picture_reader.h"
+#include "image/read_exr.h"
 #include "opaline/error.h"
 #include "opaline/image.h"
 
@@ -35,6 +37,10 @@ bool picture_module_is_loaded() {
 }
 
 Image read_image(const std::string& path) {
+  {
+    const InputFile file(path, "image file");
+    if (file.read(0, 4) == "\x76\x2f\x31\x01") return read_exr(path, file.size());
+  }
   static const ReadPicture read = reinterpret_cast<decltype(&opaline_picture_reader)>(
       picture_module_function("opaline_picture_reader"))();
   return read(path);

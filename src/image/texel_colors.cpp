@@ -10,49 +10,13 @@
 #include "opaline/error.h"
 
 namespace opaline {
-namespace {
-
-bool are_same(const RgbPrimaries& a, const RgbPrimaries& b) {
-  constexpr double kRounding = 1e-4;  // rounding of primaries given with four digits
-  for (const auto& [x, y] : {std::pair(a.red, b.red), std::pair(a.green, b.green), std::pair(a.blue, b.blue),
-                             std::pair(a.white, b.white)})
-    if (!(std::abs(x[0] - y[0]) < kRounding && std::abs(x[1] - y[1]) < kRounding)) return false;
-  return true;
-}
-
-std::string text_of(const RgbPrimaries& p) {
-  std::ostringstream text;
-  const char* before = "";
-  for (const auto& [name, xy] : {std::pair("red", p.red), std::pair("green", p.green),
-                                 std::pair("blue", p.blue), std::pair("white", p.white)}) {
-    text << before << name << ' ' << xy[0] << ' ' << xy[1];
-    before = ", ";
-  }
-  return text.str();
-}
-
-bool is_finite_matrix(const ColorMatrix& matrix) {
-  constexpr double kMost = 1e3;  // maximum weights, exceeded by nearly collinear primaries
-  return std::ranges::all_of(
-      matrix, [](const Vec3d& row) { return max_component(component_max(row, -row)) < kMost; });
-}
-
-}  // namespace
-
 std::optional<ColorMatrix> matrix_to_rec709(const OIIO::ImageSpec& file, const std::string& path) {
   float stated[8];
   if (!file.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), stated)) return {};
   const auto pair = [&](std::size_t i) {
     return std::array<double, 2>{double(stated[i]), double(stated[i + 1])};
   };
-  const RgbPrimaries primaries{pair(0), pair(2), pair(4), pair(6)};
-  if (are_same(primaries, kRec709Primaries)) return {};
-  if (are_same(primaries, kAp1Primaries)) return from_acescg();
-  const ColorMatrix matrix = color_matrix(primaries, kRec709Primaries);
-  if (!is_finite_matrix(matrix))
-    throw bad_file(path, "has chromaticities that span no colour space",
-                   "red, green and blue not on one line, and white between them", text_of(primaries));
-  return matrix;
+  return matrix_to_rec709({pair(0), pair(2), pair(4), pair(6)}, path);
 }
 
 TexelColors::TexelColors(const OIIO::ImageSpec& file, std::string_view format, const TexelLayout& layout,
