@@ -35,12 +35,12 @@ void check_channels(const std::string& path, const imf::ChannelList& channels, s
   }
 }
 
-/// Channels in the order of their layers, R, G, B and A first in each.
+/// Channels in the order of their layers, colours first in each.
 std::vector<std::string> ordered_names(const imf::ChannelList& channels) {
   std::vector<std::string> names;
   for (auto at = channels.begin(); at != channels.end(); ++at) names.emplace_back(at.name());
   const auto order = [](const std::string& name) {
-    constexpr std::string_view kFirst = "RGBA";
+    constexpr std::string_view kFirst = "RGBYA";
     const std::size_t dot = name.rfind('.') + 1;
     const std::string_view layer = std::string_view(name).substr(0, dot),
                            component = std::string_view(name).substr(dot);
@@ -115,12 +115,16 @@ void read_pixels(imf::MultiPartInputFile& file, Image& image) {
 
 }  // namespace
 
+// OpenEXR allocates the length of an attribute before reading it, whatever a damaged header claims.
 Image read_exr(const std::string& path, std::uintmax_t bytes) {
-  const char* failure = "not a readable image: ";
+  bool is_open = false;
+  const auto complain = [&](const std::string& complaint) {
+    return bad_file(path, (is_open ? "the image is damaged: " : "not a readable image: ") + complaint);
+  };
   try {
     imf::MultiPartInputFile file(path.c_str(), imf::globalThreadCount(), false);
     Image image = checked_description(path, file.header(0), bytes);
-    failure = "the image is damaged: ";
+    is_open = true;
     check_exr_chunks(path);
     read_pixels(file, image);
     if (const auto matrix = matrix_of(file.header(0), path))
@@ -129,9 +133,10 @@ Image read_exr(const std::string& path, std::uintmax_t bytes) {
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw;
+    if (is_open) throw;
+    throw complain("the header claims more memory than there is");
   } catch (const std::exception& complaint) {
-    throw bad_file(path, failure + without_name(complaint.what(), path));
+    throw complain(without_name(complaint.what(), path));
   }
 }
 
