@@ -4,8 +4,13 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
 
 namespace opaline {
+
+struct Image;
 
 /// Work counters of one stage, shared by its threads; polled by a progress display.
 struct Monitor {
@@ -15,6 +20,10 @@ struct Monitor {
   std::atomic<double> noise{-1};      ///< relative standard error so far, of random work; below 0: unknown
   std::atomic<unsigned> rounds{0};    ///< counting rounds; `done` starts at 0 in each
   std::atomic<bool> cancelled{false};
+  /// Called during the shading of an image, by one of its threads, with a copy of the image: pixels are final if
+  /// is_final is 1, otherwise 0. Set it before the work begins.
+  std::function<void(Image&& image, const std::vector<std::uint8_t>& is_final)> show_partial = {};
+  double partial_interval = 1;  ///< least time between these calls, s
 
   /// Starts a stage. work: in units of the stage's choice; progress counts up to it.
   void begin(const char* name, std::size_t work) {

@@ -40,7 +40,7 @@ struct Angle {
 };
 
 std::uint64_t hash_of(std::span<const Light> lights) {
-  constexpr std::uint64_t kVersion = 3;  // raise on changes of the sampling: results are cached by the hash
+  constexpr std::uint64_t kVersion = 4;  // raise on changes of the sampling: results are cached by the hash
   std::uint64_t hash = hash_bits(kVersion, lights.size());
   const auto add = [&](double value) { hash = hash_bits(hash, std::bit_cast<std::uint64_t>(value)); };
   for (const Light& light : lights) {
@@ -173,11 +173,17 @@ LightExtent LightTree::extent() const {
 }
 
 // The cosine at the surface is interpolated between that of the ball's centre and an upper bound over its
-// lights. The bound alone is positive for all visible lights, but overestimates wide nodes.
+// lights. The bound alone is positive for all visible lights, but overestimates wide nodes. Inside the ball, only its
+// part in front of the surface counts: at an emitting sphere itself, almost none.
 double LightTree::importance(const Node& node, const Place& at) {
   const Vec3f to = node.center - at.point;
   const float d2 = dot(to, to), r2 = node.radius * node.radius;
-  if (d2 <= r2) return r2 > 0 ? node.brightness / double(r2) : 0;
+  if (d2 <= r2) {
+    constexpr float kLeast = 1e-3f;  // bounds the weights of lights concentrated in front
+    if (!(r2 > 0)) return 0;
+    const float in_front = std::clamp(1 + dot(at.normal, to) / node.radius, kLeast, 1.f);
+    return node.brightness / double(r2) * double(in_front);
+  }
   const float per_d = 1 / std::sqrt(d2),
               ball = node.radius * per_d;  // sine of half the subtended angle
   const float middle = dot(at.normal, to) * per_d, bound = std::min(1.0f, middle + ball + kRounding);

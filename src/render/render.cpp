@@ -2,7 +2,11 @@
 #include "render/render.h"
 
 #include <atomic>
+#include <chrono>
+#include <mutex>
 #include <optional>
+#include <shared_mutex>
+#include <utility>
 
 #include "core/parallel.h"
 #include "render/bounced_light.h"
@@ -29,6 +33,53 @@ std::size_t store(const Rectangle& tile, const std::vector<PixelSample>& sums, c
   });
   return non_finite;
 }
+
+/// Image in progress, for Monitor::show_partial.
+class PartialImage {
+ public:
+  PartialImage(const Monitor* monitor, const Image& image) : monitor_(monitor), image_(image) {
+    if (is_shown()) is_final_.resize(std::size_t(image.width) * std::size_t(image.height));
+  }
+
+  /// store(): writes the tile to the image.
+  template <class Store>
+  void add(const Rectangle& tile, const Film& film, const Store& store) {
+    if (!is_shown()) return store();
+    {
+      const std::shared_lock lock(writing_);
+      store();
+      for_each_pixel(tile, rendered_part(film), [&](int x, int y, std::size_t) {
+        is_final_[std::size_t(y - image_.crop_y) * std::size_t(image_.width) +
+                  std::size_t(x - image_.crop_x)] = 1;
+      });
+    }
+    show_if_due();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool is_shown() const { return monitor_ != nullptr && monitor_->show_partial != nullptr; }
+
+  void show_if_due() {
+    const std::unique_lock turn(showing_, std::try_to_lock);
+    if (!turn.owns_lock() ||
+        std::chrono::duration<double>(Clock::now() - shown_).count() < monitor_->partial_interval)
+      return;
+    std::unique_lock lock(writing_);
+    Image image = image_;
+    const std::vector<std::uint8_t> is_final = is_final_;
+    lock.unlock();
+    monitor_->show_partial(std::move(image), is_final);
+    shown_ = Clock::now();
+  }
+
+  const Monitor* monitor_;
+  const Image& image_;
+  std::vector<std::uint8_t> is_final_;
+  std::shared_mutex writing_;  // shared by writers of different tiles
+  std::mutex showing_;
+  Clock::time_point shown_ = Clock::now();
+};
 
 // True if so many bytes may be cached per camera ray.
 bool fits(const Film& film, std::size_t bytes) {
@@ -77,11 +128,13 @@ RenderResult render(const RenderInput& input) {
   if (input.monitor != nullptr)
     input.monitor->begin("shading", tiles.size() * std::size_t(film.samples_per_pixel));
   std::atomic<std::size_t> queries{0}, non_finite{0};
+  PartialImage partial(input.monitor, result.image);
   parallel_chunks(tiles.size(), 1, [&](std::size_t begin, std::size_t, std::size_t) {
     const TileRenderer::Tile tile =
         renderer.render(tiles[begin], {}, view != nullptr ? &view->tiles[begin] : nullptr);
     queries += tile.queries;
-    non_finite += store(tiles[begin], tile.sums, input.scene, result);
+    partial.add(tiles[begin], film,
+                [&] { non_finite += store(tiles[begin], tile.sums, input.scene, result); });
   });
   result.queries = queries;
   result.non_finite = non_finite;

@@ -30,6 +30,7 @@ enum class PageText : std::size_t {
   plan,
   report,
   work,
+  file,
   behind,
   trade,
   reference,

@@ -141,6 +141,7 @@ const std::vector<Kind>& kinds() {
        }},
       {"keep_look", {"do"}, [](Reader) -> PageMessage { return KeepLook{}; }},
       {"key_look", {"do"}, [](Reader) -> PageMessage { return KeyLook{}; }},
+      {"cancel_render", {"do"}, [](Reader) -> PageMessage { return CancelFile{}; }},
       {"recall",
        {"do", "edits"},
        [](Reader r) -> PageMessage { return Recall{r.texts("edits", "path=value")}; }},

@@ -72,6 +72,7 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
   if (const auto* files = std::get_if<OpenFiles>(&message)) open(page, *files);
   if (const auto* save_as = std::get_if<SaveScene>(&message)) save(page, save_as->name);
   if (const auto* file = std::get_if<RenderFile>(&message)) render_file(page, file->name);
+  if (std::holds_alternative<CancelFile>(message)) file_monitor.cancelled = true;
   if (const auto* layer = std::get_if<ChooseLayer>(&message)) {
     page.choose_layer(layer->name);
     if (picture != nullptr) page.send(picture);
@@ -205,6 +206,8 @@ void ViewServer::State::render_file(PageConnection& page, const std::string& nam
       path_beside(edits.file(), frame ? with_frame(numbered, *frame) : name, {".exr", ".png"}, written);
   const std::string pattern = frame ? (std::filesystem::path(path).parent_path() / numbered).string() : path;
   if (renders_file) throw bad_file(path, "another file is being rendered", "one render at a time");
+  file_monitor.begin("loading", 0);
+  file_monitor.cancelled = false;
   file_thread =
       std::jthread([this, path, pattern, frame, scene = edits.file(), overrides = edits.overrides()] {
         std::string failure;
@@ -221,6 +224,7 @@ void ViewServer::State::render_file(PageConnection& page, const std::string& nam
         });
       });
   renders_file = true;
+  if (!std::exchange(shows_progress, true)) show_progress();
   page.answer(told_text(true, "rendering " + path + by_scene_camera()));
 }
 

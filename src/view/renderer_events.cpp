@@ -72,10 +72,13 @@ BackgroundEvents ViewServer::State::background_events() {
 /// Every kTick during drawing; an idle view does not wake up.
 void ViewServer::State::show_progress() {
   renderer->end_stale_work();
-  shows_progress = renderer->is_drawing();
-  std::string work = work_text(renderer->monitor());
-  const SharedText& last = texts[PageText::work];
-  if (last == nullptr || *last != work) tell(PageText::work, std::move(work));
+  shows_progress = renderer->is_drawing() || renders_file;
+  const auto tell_news = [&](PageText kind, std::string text) {
+    const SharedText& last = texts[kind];
+    if (last == nullptr || *last != text) tell(kind, std::move(text));
+  };
+  tell_news(PageText::work, work_text(renderer->monitor()));
+  tell_news(PageText::file, file_text(file_monitor, renders_file));
   if (!shows_progress) return;
   timer.expires_after(kTick);
   timer.async_wait([this](boost::beast::error_code) { show_progress(); });

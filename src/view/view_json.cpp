@@ -72,6 +72,14 @@ Json group_json(const Scene& scene, const BodyPlan& group) {
           {"text", text}};
 }
 
+std::string progress_text(const char* kind, const Monitor& monitor) {
+  const char* stage = monitor.stage;
+  return compact({{"is", kind},
+                  {"stage", stage != nullptr ? stage : ""},
+                  {"done", monitor.done.load()},
+                  {"total", monitor.total.load()}});
+}
+
 }  // namespace
 
 std::string schema_text() {
@@ -168,11 +176,11 @@ std::string reference_text(const ReferenceState& state) {
 }
 
 std::string work_text(const Monitor& monitor) {
-  const char* stage = monitor.stage;
-  return compact({{"is", "work"},
-                  {"stage", stage != nullptr ? stage : ""},
-                  {"done", monitor.done.load()},
-                  {"total", monitor.total.load()}});
+  return progress_text("work", monitor);
+}
+
+std::string file_text(const Monitor& monitor, bool is_rendered) {
+  return is_rendered ? progress_text("file", monitor) : compact({{"is", "file"}, {"stage", ""}});
 }
 
 std::string failed_text(std::uint32_t revision, const std::string& why) {

@@ -40,6 +40,9 @@ std::string reference_text(const ReferenceState& state);
 /// "work": the running stage and its progress; an empty stage if idle.
 std::string work_text(const Monitor& monitor);
 
+/// "file": progress of the image rendered to a file; an empty stage without one.
+std::string file_text(const Monitor& monitor, bool is_rendered);
+
 /// "failed": a change without an image. "told": an answer to one page; `good`: the request succeeded.
 std::string failed_text(std::uint32_t revision, const std::string& why);
 std::string told_text(bool good, const std::string& text);

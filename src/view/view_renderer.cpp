@@ -11,10 +11,12 @@
 #include "methods/direct/direct.h"
 #include "opaline/error.h"
 #include "plan/expected_error.h"
+#include "plan/expected_seconds.h"
 #include "plan/picture_warnings.h"
 #include "plan/placement_warnings.h"
 #include "plan/shapes_inside.h"
 #include "render/camera_rays.h"
+#include "render/fields/make_fields.h"
 #include "session/spectral_image.h"
 #include "subsurface/method.h"
 #include "view/lit_anew.h"
@@ -25,7 +27,8 @@ namespace {
 constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: an interactive image, its rays
 constexpr double kKnob = .06;                       // s: an image after turning a knob
 constexpr double kPatience = .5;                    // s: maximum wait for running interactive work
-constexpr double kLongFinal = .25;                  // s: longer final images get a sharper one before
+constexpr double kLongFinal = .25;                  // s: longer final images get sharper ones before
+constexpr double kDearer = 2;  // a change is not as quick as the last one with this ratio of expected times
 constexpr int kCoarsest = 16;
 
 std::unique_ptr<Session> new_session() {
@@ -110,6 +113,8 @@ std::optional<std::size_t> ViewRenderer::shape_at(const std::array<int, 2>& pixe
 std::optional<ViewRenderer::Wanted> ViewRenderer::next() {
   std::unique_lock lock(mutex_);
   monitor_.begin(nullptr, 0);
+  monitor_.show_partial = {};
+  draft_.reset();
   is_drawing_ = refines_ = false;
   for (;;) {
     changed_.wait(lock, [&] { return stopped_ || wanted_ || picked_; });
@@ -201,6 +206,9 @@ void ViewRenderer::draw(const Wanted& wanted) {
   check_memory(session_->plan());
   Spent& spent = spent_[change];
   const bool is_direct = wanted.scene.settings.method == Method::direct;
+  const double expected = expected_seconds(session_->scene(), session_->plan());
+  if (expected > kDearer * spent.expected) spent = {};
+  spent.expected = expected;
   const bool is_quick = spent.prepare < kFrame && !is_direct;
   const Stopwatch watch;
   const auto lit = is_quick && spent.final < kKnob ? nullptr : show_lit_anew(wanted, spent);
@@ -215,11 +223,13 @@ void ViewRenderer::draw(const Wanted& wanted) {
   if (lit != nullptr && lit->step == PictureStep::final)
     return report(wanted, lit->image, estimated_relative_error(lit->image, lit->translucent),
                   std::move(relighting));
+  draft_ = lit;
   if (lit != nullptr) return draw_final(wanted, spent, &monitor_);
   if (is_quick && spent.final < (change == camera ? kFrame : kKnob))
     return draw_final(wanted, spent, &brief_);
-  draw_draft(wanted, draft_stride(wanted.scene.film), PictureStep::moving, &brief_);
-  refine(wanted, spent);
+  const int stride = draft_stride(wanted.scene.film);
+  draft_ = draw_draft(wanted, stride, PictureStep::moving, &brief_);
+  refine(wanted, spent, stride);
 }
 
 /// The last final image relit for the scene's lights, if possible; otherwise null.
@@ -233,13 +243,35 @@ std::shared_ptr<const ViewPicture> ViewRenderer::show_lit_anew(const Wanted& wan
                  final_->translucent);
 }
 
-void ViewRenderer::refine(const Wanted& wanted, Spent& spent) {
+/// Ever sharper images, the first of them in kLongFinal, if the final one takes longer.
+/// stride: of the image shown
+void ViewRenderer::refine(const Wanted& wanted, Spent& spent, int stride) {
   advance(&monitor_, 0);
-  const int stride = draft_stride(wanted.scene.film);
-  const double sharper = seconds_per_pixel_ * pixels_of(wanted.scene.film) * 4 / (stride * stride);
-  if (stride > 1 && spent.final > kLongFinal && sharper < spent.final / 2)
-    draw_draft(wanted, std::max(1, stride / 2), PictureStep::sharper, &monitor_);
+  const Film& film = wanted.scene.film;
+  const auto expected = [&](int side) {
+    return seconds_per_sharper_pixel_ * pixels_of(film) / (side * side);
+  };
+  const double last = std::isfinite(spent.final) ? spent.final : expected(1) * film.samples_per_pixel;
+  while (stride > 1 && last > kLongFinal) {
+    do stride /= 2;
+    while (stride > 1 && expected(stride / 2) < kLongFinal);
+    if (expected(stride) > last / 2) break;
+    draft_ = draw_draft(wanted, stride, PictureStep::sharper, &monitor_);
+  }
   draw_final(wanted, spent, &monitor_);
+}
+
+/// Finished pixels of the final image over those of the last draft.
+void ViewRenderer::show_partial(const Wanted& wanted, Image&& image,
+                                const std::vector<std::uint8_t>& is_final) {
+  if (draft_ == nullptr || draft_->image.width != image.width || draft_->image.height != image.height ||
+      draft_->image.channels != image.channels)
+    return;
+  const std::size_t channels = image.channels.size();
+  for (std::size_t p = 0; p < is_final.size(); ++p)
+    if (is_final[p] == 0)
+      std::copy_n(&draft_->image.pixels[p * channels], channels, &image.pixels[p * channels]);
+  publish(wanted, PictureStep::sharper, std::move(image));
 }
 
 int ViewRenderer::draft_stride(const Film& film) const {
@@ -247,8 +279,11 @@ int ViewRenderer::draft_stride(const Film& film) const {
   return int(std::ceil(std::clamp(stride, 1.0, double(kCoarsest))));
 }
 
-void ViewRenderer::draw_draft(const Wanted& wanted, int stride, PictureStep step, Monitor* monitor) {
+std::shared_ptr<const ViewPicture> ViewRenderer::draw_draft(const Wanted& wanted, int stride,
+                                                            PictureStep step, Monitor* monitor) {
   Scene scene = session_->scene();
+  double& seconds_per_pixel = step == PictureStep::moving ? seconds_per_pixel_ : seconds_per_sharper_pixel_;
+  if (step != PictureStep::moving) scene.settings.light_samples = light_samples_of_ray(scene);
   scene.film = coarse_film(scene.film, stride);
   const Clock::time_point start = Clock::now();
   RenderInput input{scene, session_->world(), session_->rays(), session_->bodies(), monitor};
@@ -257,14 +292,20 @@ void ViewRenderer::draw_draft(const Wanted& wanted, int stride, PictureStep step
   Image image = render(input).image;
   if (const auto& wavelengths = input.scene.wavelengths) convert_to_rgb(image, wavelengths->alone);
   const double seconds = seconds_since(start);
-  seconds_per_pixel_ += .5 * (seconds / pixels_of(scene.film) - seconds_per_pixel_);
-  publish(wanted, step, std::move(image));
+  seconds_per_pixel += .5 * (seconds / pixels_of(scene.film) - seconds_per_pixel);
+  return publish(wanted, step, std::move(image));
 }
 
 void ViewRenderer::draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor) {
   const Clock::time_point start = Clock::now();
   const Stopwatch watch;
+  // The parts of an image in more than three wavelengths have no colours.
+  if (monitor == &monitor_ && !wanted.scene.wavelengths)
+    monitor_.show_partial = [&](Image&& image, const std::vector<std::uint8_t>& is_final) {
+      show_partial(wanted, std::move(image), is_final);
+    };
   RenderResult result = session_->render(monitor);
+  monitor_.show_partial = {};
   spent.final = seconds_since(start);
   StageCost shading = watch.cost("shading");
   const auto picture =

@@ -22,8 +22,8 @@
 
 namespace opaline {
 
-/// moving: the result of a thirtieth of a second; sharper: more pixels and the same samples, or the last
-/// final image relit (lit_anew.h); final: the bytes of `opaline render`, or the last final image scaled, if
+/// moving: the result of a thirtieth of a second; sharper: more pixels and the same samples, the finished parts
+/// of the final image over such pixels, or the last final image relit (lit_anew.h); final: the bytes of `opaline render`, or the last final image scaled, if
 /// all lights changed by one factor and a new render takes long. reference: of another method, for comparison
 /// (view_background.h).
 enum class PictureStep : std::uint32_t { moving, sharper, final, reference };
@@ -45,7 +45,7 @@ struct ViewReport {
   std::vector<std::string> warnings;
 };
 
-/// Called on the renderer's thread.
+/// Called on the renderer's thread; picture also on threads of the shading.
 struct ViewEvents {
   /// boxes: of the shapes, mm
   std::function<void(std::uint32_t revision, const Scene& scene, const Plan& plan,
@@ -103,6 +103,7 @@ class ViewRenderer {
   struct Spent {
     double prepare = std::numeric_limits<double>::infinity();
     double final = std::numeric_limits<double>::infinity();
+    double expected = 0;  ///< expected_seconds of its scene
   };
 
   void run();
@@ -112,10 +113,12 @@ class ViewRenderer {
   void draw(const Wanted& wanted);
   void anchor(const Wanted& wanted);
   std::shared_ptr<const ViewPicture> show_lit_anew(const Wanted& wanted, const Spent& spent);
-  void refine(const Wanted& wanted, Spent& spent);
+  void refine(const Wanted& wanted, Spent& spent, int stride);
+  void show_partial(const Wanted& wanted, Image&& image, const std::vector<std::uint8_t>& is_final);
   void draw_final(const Wanted& wanted, Spent& spent, Monitor* monitor);
   void draw_direct(const Wanted& wanted);
-  void draw_draft(const Wanted& wanted, int stride, PictureStep step, Monitor* monitor);
+  std::shared_ptr<const ViewPicture> draw_draft(const Wanted& wanted, int stride, PictureStep step,
+                                                Monitor* monitor);
   int draft_stride(const Film& film) const;
   std::shared_ptr<const ViewPicture> publish(const Wanted& wanted, PictureStep step, Image image,
                                              std::vector<std::uint8_t> translucent = {});
@@ -126,10 +129,11 @@ class ViewRenderer {
   std::optional<Scene> prepared_;
   std::atomic<bool> refines_ = false;  ///< draws from prepared_
   std::optional<Scene> anchor_;        ///< scene anchoring the session, without values irrelevant to samples
+  std::shared_ptr<const ViewPicture> draft_;  ///< the last one of the current scene
   std::shared_ptr<const ViewPicture> final_;  ///< the last one, of final_scene_
   std::optional<Scene> final_scene_;
   std::array<Spent, kChanges> spent_;
-  double seconds_per_pixel_ = 2e-6;  // cost of drafts
+  double seconds_per_pixel_ = 2e-6, seconds_per_sharper_pixel_ = 2e-6;  // costs of drafts
   Monitor monitor_;
   Monitor brief_;     ///< monitor of interactive work
   std::mutex mutex_;  // guards the next five

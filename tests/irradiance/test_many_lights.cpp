@@ -173,6 +173,20 @@ TEST(ManyLights, AreMoreThanSixteenOfAKind) {
   EXPECT_EQ(std::get<ManyLights>(gathered[0].source).tree->lights().size(), 20u);
 }
 
+// Claim: at a sphere that emits, few draws go to it, as it does not light itself. Source: no part of a ball is in front
+// of its surface. Tolerance: half of the draws, of a thousandth of its importance. Fails if a light is as important anywhere in
+// its bounding ball.
+TEST(LightTree, LeavesOutTheLightThatAPointIsOn) {
+  std::vector<Light> lights;
+  for (int i = 0; i < 8; ++i) lights.push_back(light_of(SphereLight{{20. * i, 0, 0}, 3, Rgb(1)}));
+  const LightTree tree(lights);
+  for (std::uint64_t p = 0; p < 100; ++p) {
+    const Vec3d way = random_way(p);
+    const LightTree::Place at{Vec3f(Vec3d{60, 0, 0} + way * 2.9999), Vec3f(way)};
+    EXPECT_LT(tree.share(at, 3), .5) << p;
+  }
+}
+
 // A torus below a box that shades it.
 struct Place {
   LitWorld lit{world_of({TorusShape{{}, 10, 4}, BoxShape{{3, 12, 0}, {6, 13, 4}}})};

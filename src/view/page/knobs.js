@@ -54,6 +54,8 @@ function defaultOf(row) {
     return undefined;
   }
 }
+// As it fits a field; the scene keeps all digits.
+const short = (value) => value === undefined || value === null ? "" : Number.isInteger(value) ? value : Number(value.toPrecision(4));
 const threeOf = (value) =>
   typeof value === "string" ? fromHex(value) : Array.isArray(value) ? value : [value, value, value];
 
@@ -108,7 +110,7 @@ export class Knobs {
       this.buttons([["Copy", {do: "lights", change: "copy", index: i}], ["Remove", {do: "lights", change: "remove", index: i}]]))));
     this.root.append(this.buttons([["Add light", {do: "lights", change: "add", index: 0}]]));
     group("scene", "Scene", ["surroundings", "backdrop", "mm_per_unit"].map((key) => this.knob("scene", key, key, (s) => s[key])).concat(this.floorRow()));
-    (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`, [...this.materialRow(i),
+    (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`, [...this.materialRow(i), this.sizeRow(i),
       ...[...("medium" in shape ? [] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), ...("emission" in shape ? ["emission"] : []), "normals", "visible"].map((key) =>
         this.knob("shape", key, `${this.pathOf("shapes", i)}.${key}`, (s) => s.shapes[i][key])), ...this.placementRows(i)]));
     group("camera", "Camera", this.rowsOf("camera", "camera", (s) => s.camera, unusedOf(scene.camera)));
@@ -127,6 +129,20 @@ export class Knobs {
     const root = make("label", {className: "knob", title: "a diffuse floor just below all shapes"}, make("span", {className: "name", textContent: "floor"}), make("span", {className: "inputs"}, input));
     this.knobs.push({path: "floor", root, value: (s) => s.floor, show: (isOn) => { input.checked = Boolean(isOn); }});
     return root;
+  }
+
+  // Largest extent of a shape; the whole scene is scaled.
+  sizeRow(i) {
+    const size = () => {
+      const box = this.boxes?.[i];
+      return box ? Math.max(...box[1].map((x, k) => x - box[0][k])) * (this.scene.mm_per_unit ?? 1) : undefined;
+    };
+    const row = {key: "size", type: "number", unit: "mm", default: "", range: [1e-6, 1e9], slider: [0, 1],
+      meaning: "largest extent of the shape; changes mm_per_unit, the size of the whole scene"};
+    const knob = this.knob("scene", "mm_per_unit", `shapes.${i}.size`, size, {row,
+      set: (wanted, stroke) => size() > 0 && wanted > 0 && this.set({mm_per_unit: rounded((this.scene.mm_per_unit ?? 1) * wanted / size())}, stroke)});
+    this.knobs[this.knobs.length - 1].path = "mm_per_unit";
+    return knob;
   }
 
   nameRow(name) {
@@ -230,7 +246,7 @@ export class Knobs {
     const range = kNumbers.concat(kColours).includes(row.type) && Math.abs(row.range[1]) < 1e29 ? `, ${row.range[0]} to ${row.range[1]}` : "";
     const unit = row.unit || (["length", "point"].includes(row.type) ? "scene units" : "");
     const help = `${row.key}: ${plain(row.meaning)}${unit ? ` [${unit}]` : ""}${range}${row.default ? `; default ${plain(row.default)}` : ""}`;
-    knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name"}, ...row.key.split(/(?<=_)/).flatMap((word) => [word, make("wbr")])), inputs);
+    knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name", textContent: row.label || row.key.replaceAll("_", " ")}), inputs);
     knob.root.role = "group";
     knob.root.setAttribute("aria-label", `${path}, ${unit}`);
     if (row.unit && row.unit.length < 14) inputs.append(make("span", {className: "unit", textContent: row.unit}));
@@ -305,7 +321,7 @@ export class Knobs {
     const slider = this.slider(row, () => now, (value, stroke) => set(value, stroke));
     knob.show = (value) => {
       now = value ?? this.presetOf(knob)?.[row.key] ?? defaultOf(row);
-      if (now !== shown) input.value = now ?? "";
+      if (now !== shown) input.value = short(now);
       shown = now;
       slider.show(now);
     };
@@ -342,7 +358,7 @@ export class Knobs {
     slider.input.addEventListener("change", () => { slider.from = null; });
     knob.show = () => {
       const now = colourNow();
-      now.forEach((x, i) => { inputs[i].value = rounded(x); });
+      now.forEach((x, i) => { inputs[i].value = short(x); });
       slider.show(top());
       if (row.type === "color") swatch.value = toHex(now.map((x) => x / Math.max(row.range[1] <= 1 ? 1 : top(), 1e-30)));
     };
@@ -358,7 +374,7 @@ export class Knobs {
     const inputs = this.numbers(knob.row, names, listNow, set);
     knob.show = () => {
       const now = listNow() ?? [];
-      inputs.forEach((input, i) => { input.value = now[i] ?? ""; });
+      inputs.forEach((input, i) => { input.value = short(now[i]); });
     };
     box.append(make("span", {className: "three"}, ...inputs));
   }

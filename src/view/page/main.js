@@ -2,19 +2,22 @@
 // Connects the server with the image, the knobs and the status lines.
 import {Ahead} from "./ahead.js";
 import {Bookmarks} from "./bookmarks.js";
-import {boxAround, cameraOf, framed, lookOf, rounded} from "./camera.js";
+import {boxAround, cameraOf, framed, lookOf, orbit, rounded} from "./camera.js";
 import {CameraInput} from "./camera_input.js";
 import {Connection, newStroke} from "./connection.js";
 import {Drop} from "./drop.js";
 import {Gizmo} from "./gizmo.js";
-import {Knobs} from "./knobs.js";
+import {Knobs, make} from "./knobs.js";
 import {Overlay} from "./overlay.js";
-import {draw, parseFrame, valuesAt} from "./picture.js";
+import {draw, kErrorRange, parseFrame, valuesAt} from "./picture.js";
 import {Snapshots} from "./snapshots.js";
 import {Trade} from "./trade.js";
 
 const one = (id) => document.getElementById(id);
-const kLooksOpaque = 300;                                          // mean free paths through a body
+const kLooksOpaque = 300;  // mean free paths through a body
+const kLooksClear = 1;     // mean free paths
+const kNoticed = 400;      // ms
+const kRadiansASecond = .25, kTurnStep = 33;  // ms
 
 const film = {aspect: 1, shownHeight: 1, place: (seen) => seen};
 const state = {scene: null, camera: null, film, wipe: 0, revision: 0, edits: [], command: "", boxes: [], selected: null};
@@ -47,9 +50,10 @@ function fit() {
 const leftPicture = () => pinned || (behind.reference && frame && reference?.revision === frame.revision ? reference : null);
 
 function redraw() {
-  const left = leftPicture();
-  if (frame) draw(beside || frame, one("picture"), display);
-  if (left) draw(left, one("pinned"), display);
+  const left = leftPicture(), right = beside || frame;
+  if (frame) draw(right, one("picture"), display, left);
+  if (left) draw(left, one("pinned"), display, right);
+  one("legend").hidden = display.channel !== "error" || !frame;
   one("pinned").hidden = !left;
   state.wipe = left ? Number(one("wipe").value) : 0;
   one("pinned").style.clipPath = `inset(0 ${100 - state.wipe}% 0 0)`;
@@ -196,6 +200,42 @@ async function copyCommand() {
   }
 }
 
+// A link to this page with the settings and the camera of now.
+async function copyLink() {
+  const link = new URL(location.href);
+  link.hash = encodeURIComponent(JSON.stringify({edits: state.edits, look: state.scene.look, frame: state.frame}));
+  try {
+    await navigator.clipboard.writeText(link.href);
+    tell("copied: " + link.href);
+  } catch {
+    tell(link.href);  // to be copied by hand
+  }
+}
+
+// Settings of a link are set once, when the scene is there.
+function takeLink() {
+  if (location.hash.length < 2) return;
+  const text = decodeURIComponent(location.hash.slice(1));
+  history.replaceState(null, "", location.pathname + location.search);
+  try {
+    recall(JSON.parse(text));
+  } catch {
+    tell("the link has no settings", false);
+  }
+}
+
+// Turns the free camera about the scene until the button is pressed again.
+let turnedAt = 0;
+function turnTable(now) {
+  if (one("turntable").getAttribute("aria-pressed") !== "true") return void (turnedAt = 0);
+  if (turnedAt && state.camera && now - turnedAt >= kTurnStep) {
+    turn((camera) => orbit(camera, kRadiansASecond * (now - turnedAt) / 1000, 0));
+    turnedAt = now;
+  }
+  turnedAt ||= now;
+  requestAnimationFrame(turnTable);
+}
+
 function chooseChannel() {
   display.channel = one("channel").value;
   connection.send({do: "layer", name: display.channel.length > 1 || "NPZ".includes(display.channel) ? display.channel : ""});
@@ -247,6 +287,7 @@ function takeScene(message) {
     one("name").value = message.file.replace(/(\.(json|glb|gltf|obj|ply|stl|off))?$/i, "-edited");
     setExposure(message.scene.film?.exposure || 0);
     one("transform").value = display.transform = message.scene.film?.view || "soft";
+    takeLink();
   }
   one("undo").disabled = !message.undo;
   one("redo").disabled = !message.redo;
@@ -270,17 +311,33 @@ function takeFrames({frames, frame: now}) {
   one("shown-frame").textContent = now;
 }
 
+// Warns of bodies with an unlikely size, each with a button for it.
 function sizeWarnings(groups) {
-  return groups.filter((group) => group.mean_free_path > 0 && group.thickness > kLooksOpaque * group.mean_free_path).map((group) =>
-    `${group.name} is ${group.thickness.toPrecision(3)} mm thick on average, ${Math.round(group.thickness / group.mean_free_path)} mean free paths of ${group.medium}: it looks opaque. Check its size (mm_per_unit, fit_size).`);
+  return groups.flatMap(({name, medium, thickness, mean_free_path: path}) => {
+    const look = !(path > 0 && thickness > 0) ? "" : thickness > kLooksOpaque * path ? "opaque" : thickness < kLooksClear * path ? "like clear glass" : "";
+    if (!look) return [];
+    const index = state.scene.shapes.findIndex((shape) => shape.name === name);
+    const button = make("button", {type: "button", textContent: "Set size", onclick: () => knobs.reveal(`shapes.${index}`)});
+    return [make("li", {}, `${name} is ${thickness.toPrecision(3)} mm thick on average, ${(thickness / path).toPrecision(2)} mean free paths of ${medium}: it looks ${look}. `,
+      ...(index < 0 ? ["Check its size (mm_per_unit, fit_size)."] : [button]))];
+  });
 }
 
-const list = (texts) => texts.map((text) => Object.assign(document.createElement("li"), {textContent: text}));
+const list = (texts) => texts.map((text) => make("li", {textContent: text}));
 const paragraph = (text) => Object.assign(document.createElement("p"), {textContent: text});
-let plan = {groups: [], stages: [], warnings: [], memory: ""}, report = null;
+let plan = {groups: [], stages: [], warnings: [], memory: ""}, report = null, overdue = 0;
+let filing = null;  // image at the start of the rendering of a file
+
+// Names the image of an earlier scene, once the new one's takes a while.
+function noteWait() {
+  clearTimeout(overdue);
+  overdue = setTimeout(() => {
+    if (frame && frame.revision < plan.revision) one("step").textContent = one("step").dataset.step = "waiting";
+  }, kNoticed);
+}
 
 function showPlan() {
-  one("warnings").replaceChildren(...list([...plan.warnings, ...sizeWarnings(plan.groups), ...(report?.warnings || [])]));
+  one("warnings").replaceChildren(...sizeWarnings(plan.groups), ...list([...plan.warnings, ...(report?.warnings || [])]));
   const words = [...plan.groups.map((group) => group.text), ...plan.stages, plan.memory].map(paragraph), lines = [];
   if (report) {
     const table = document.createElement("table");
@@ -300,8 +357,10 @@ const takes = {
   scene: takeScene,
   plan: (message) => {
     plan = message;
-    state.boxes = message.boxes;
+    state.boxes = knobs.boxes = message.boxes;
+    if (state.scene) knobs.update(state.scene, state.edits);
     report = null;
+    noteWait();
     updateOverlay();
     one("error").textContent = "";
     showPlan();
@@ -318,6 +377,13 @@ const takes = {
   },
   work: ({stage, done, total}) => {
     one("work").textContent = stage ? `${stage}${total ? ` ${Math.min(100, Math.floor(100 * done / total))} %` : ""}` : "";
+  },
+  file: ({stage, done, total}) => {
+    const isRendering = stage !== "";
+    if (isRendering && !filing) filing = {frame, isAsSeen: !state.scene.look && frame?.step === "final" && frame.revision === state.revision};
+    one("cancel").hidden = !isRendering;
+    one("cancel").textContent = `Cancel: ${stage}${total ? ` ${Math.min(100, Math.floor(100 * done / total))} %` : ""}`;
+    one("render").disabled = one("render-png").disabled = isRendering;
   },
   failed: (message) => {
     if (message.revision !== state.revision) return;
@@ -346,6 +412,8 @@ const takes = {
   },
   // A refused edit is dropped: the scene message follows.
   told: (message) => {
+    if (filing && message.text.startsWith("rendered ") && filing.isAsSeen && filing.frame === frame) takeSnapshot();
+    if (/^rendered |: interrupted$/.test(message.text)) filing = null;
     if (!message.good) ahead.clear();
     tell(message.text, message.good);
   },
@@ -412,6 +480,14 @@ for (const button of one("tools").querySelectorAll("[data-mode]")) button.onclic
 one("copy").onclick = copyCommand;
 one("save").onclick = () => connection.send({do: "save", name: one("name").value + ".json"});
 one("render").onclick = () => connection.send({do: "render", name: one("name").value + ".exr"});
+one("render-png").onclick = () => connection.send({do: "render", name: one("name").value + ".png"});
+one("cancel").onclick = () => connection.send({do: "cancel_render"});
+one("link").onclick = copyLink;
+one("turntable").onclick = () => {
+  const isOn = one("turntable").getAttribute("aria-pressed") !== "true";
+  one("turntable").setAttribute("aria-pressed", String(isOn));
+  if (isOn) requestAnimationFrame(turnTable);
+};
 one("pin").onclick = () => compare(pinned ? null : frame, "");
 one("reference").onchange = () => compare(null, one("reference").value);
 one("choose").onsubmit = (event) => {
@@ -419,6 +495,11 @@ one("choose").onsubmit = (event) => {
   connection.send({do: "choose", error: Number(one("target").value) / 100});
 };
 one("trade").ontoggle = () => askBehind({trade: one("trade").open});
+one("legend").replaceChildren(...kErrorRange.map(([error, colour]) => {
+  const mark = make("span", {textContent: `${100 * error} %`});
+  mark.style.background = `rgb(${colour.join()})`;
+  return mark;
+}));
 one("exposure").oninput = () => { setExposure(Number(one("exposure").value)); redraw(); };
 one("transform").onchange = () => { display.transform = one("transform").value; redraw(); };
 one("channel").onchange = chooseChannel;

@@ -132,6 +132,28 @@ function drawColours(frame, out, display) {
   }
 }
 
+// Relative error in false colours, by its logarithm.
+export const kErrorRange = [[.001, [13, 20, 90]], [.003, [0, 90, 170]], [.01, [0, 160, 140]], [.03, [120, 200, 60]],
+  [.1, [250, 210, 40]], [.3, [235, 90, 30]], [1, [190, 10, 40]]];
+function errorPixel(error) {
+  const after = Math.min(kErrorRange.length - 1, Math.max(1, kErrorRange.findIndex(([end]) => error < end))) || 1;
+  const [[low, a], [high, b]] = [kErrorRange[error < 1 ? after - 1 : kErrorRange.length - 2], kErrorRange[error < 1 ? after : kErrorRange.length - 1]];
+  const t = Math.max(0, Math.min(1, Math.log(Math.max(error, 1e-9) / low) / Math.log(high / low)));
+  return kOpaque | [2, 1, 0].reduce((bits, c) => bits << 8 | Math.round(a[c] + t * (b[c] - a[c])), 0);
+}
+
+// The image's own estimate; without one, its difference from the other side of the wipe. Background is black.
+function drawError(frame, out, other) {
+  const of = (h) => kFloats[frame.colours[h]] + kFloats[frame.colours[h + 1]] + kFloats[frame.colours[h + 2]];
+  for (let p = 0; p < out.length; ++p) {
+    const h = 4 * p, light = of(h), n = frame.channels;
+    let error = 0;
+    for (let c = 0; c < 3; ++c)
+      error += frame.layer ? frame.layer[n * p + Math.min(c, n - 1)] : Math.abs(kFloats[frame.colours[h + c]] - kFloats[other.colours[h + c]]);
+    out[p] = frame.colours[h + 3] ? errorPixel(error / Math.max(light, 1e-9)) : kOpaque;
+  }
+}
+
 // Positions, normals and depths by their range, light as light.
 function layerCurve(frame, display) {
   if (display.channel === "N") return (x) => toByte(.5 + .5 * x);
@@ -161,8 +183,9 @@ function drawLayer(frame, out, display) {
   }
 }
 
-// display: {exposure, transform, channel}; the channel is R, G, B, A, empty for the colours, or a layer's name.
-export function draw(frame, canvas, display) {
+// display: {exposure, transform, channel}; the channel is R, G, B, A, empty for the colours, or a layer's name. other: the
+// image on the other side of the wipe, or null.
+export function draw(frame, canvas, display, other = null) {
   if (canvas.width !== frame.width || canvas.height !== frame.height) {
     canvas.width = frame.width;
     canvas.height = frame.height;
@@ -170,7 +193,9 @@ export function draw(frame, canvas, display) {
   const context = canvas.getContext("2d"), image = context.createImageData(frame.width, frame.height);
   const out = new Uint32Array(image.data.buffer);
   const isLayer = display.channel.length > 1 || "NPZ".includes(display.channel);
-  if (display.channel && isLayer && frame.layer) drawLayer(frame, out, display);
+  const hasError = frame.layer || (other?.width === frame.width && other.height === frame.height);
+  if (display.channel === "error" && hasError) drawError(frame, out, other);
+  else if (display.channel && isLayer && frame.layer) drawLayer(frame, out, display);
   else drawColours(frame, out, display);
   context.putImageData(image, 0, 0);
 }
