@@ -167,12 +167,13 @@ fetch_python() {
 }
 
 # The program that writes many of the .glb files there are, for the slow tests that read one; the same holds.
-# bpy 4.5 is for Python 3.11, Debian 12's.
+# bpy 4.5 and 5.0 are for Python 3.11, Debian 12's.
+# in    a version, then the name of its folder
 fetch_blender() {
-  local folder=$root/build-blender
+  local folder=$root/$2
   [[ ! -e $folder/done ]] || return 0
-  say "fetching Blender from PyPI (400 MB)"
-  if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet 'bpy>=4.5,<4.6' &&
+  say "fetching Blender $1 from PyPI (400 MB)"
+  if python3 -m venv "$folder" && "$folder/bin/python3" -m pip install --quiet "bpy~=$1.0" &&
     "$folder/bin/python3" -c 'import bpy'; then
     touch "$folder/done"
   else

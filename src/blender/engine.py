@@ -11,8 +11,9 @@ from . import passes, program
 from .camera import border_of
 from .exr_file import read_exr
 from .lights import world_light_name
+from .materials import is_emitter
 from .properties import preferences
-from .scene_export import ExportError, export_scene
+from .scene_export import SURFACE_TYPES, ExportError, export_scene, light_names
 
 
 def render_words(path, scene_file, output, scene, layers, cache):
@@ -49,6 +50,10 @@ class OpalineRenderEngine(bpy.types.RenderEngine):
     def update_render_passes(self, scene=None, renderlayer=None):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
         lights = [thing.name_full for thing in scene.objects if thing.type == "LIGHT" and not thing.hide_render]
+        for thing in scene.objects:
+            if thing.type in SURFACE_TYPES and not thing.hide_render:
+                lights += [f"{thing.name_full}/{number}" if number else thing.name_full
+                           for number, slot in enumerate(thing.material_slots) if is_emitter(slot.material)]
         world = world_light_name(scene.world)
         for each in passes.wanted_passes(scene, renderlayer, lights + ([world] if world else [])):
             self.register_pass(scene, renderlayer, each.name, len(each.parts), each.parts, each.kind)
@@ -80,8 +85,7 @@ class OpalineRenderEngine(bpy.types.RenderEngine):
         scene_file, keys, warnings = export_scene(depsgraph, folder, self.camera_override or scene.camera)
         for text in warnings:
             self.warn(text)
-        lights = [light["name"] for light in keys["lights"]] + (["surroundings"] if "surroundings" in keys else [])
-        wanted = passes.wanted_passes(scene, view_layer, lights)
+        wanted = passes.wanted_passes(scene, view_layer, light_names(keys))
         output = os.path.join(folder, "image.exr")
         cache = cache_folder() if scene.opaline.use_cache else ""
         words = render_words(path, scene_file, output, scene, passes.layers_of(wanted), cache)

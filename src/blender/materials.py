@@ -7,17 +7,22 @@ from . import conventions, nodes
 
 DEFAULT_REFLECTANCE = 0.8
 SHADERS = {"BSDF_PRINCIPLED", "BSDF_DIFFUSE", "SUBSURFACE_SCATTERING"}
-IGNORED_WEIGHTS = ("Transmission Weight", "Coat Weight", "Emission Strength")
+IGNORED_WEIGHTS = ("Transmission Weight", "Coat Weight")
+KEYS_OF_ANY_SHAPE = {"normal_map", "bump_map", "emission"}
+EMISSION_SOCKETS = {"BSDF_PRINCIPLED": ("Emission Color", "Emission Strength"), "EMISSION": ("Color", "Strength")}
+HOLE_ALPHA = 0.5  # less is a hole
 
 
 @dataclass
 class Surface:
-    """Keys for the scene file. With a medium, `shape` has only normal maps."""
+    """Keys for the scene file. With a medium, `shape` has only normal maps and emission."""
 
     name: str
     shape: dict = field(default_factory=dict)
     medium: dict | None = None
     needs_tangents: bool = False
+    color_attribute: str | None = None  # replaces the reflectance; "": the one that the mesh renders with
+    is_hole: bool = False  # invisible everywhere
 
 
 def unit_clamp(value):
@@ -59,12 +64,18 @@ class MaterialReader:
                 self.read_principled(surface, reader, shader, reads_medium=not preset)
             elif shader.type == "SUBSURFACE_SCATTERING":
                 self.read_scattering(surface, reader, shader)
+            elif shader.type == "EMISSION":
+                surface.shape["reflectance"] = 0
             else:
-                surface.shape["reflectance"] = unit_clamp(reader.value(nodes.input_named(shader, "Color")))
+                self.read_reflectance(surface, reader, nodes.input_named(shader, "Color"))
+            if shader.type in EMISSION_SOCKETS:
+                self.read_emission(surface, reader, shader)
         if preset:
             self.use_preset(surface, reader, shader, preset)
         elif surface.medium is not None and settings is not None:
             surface.medium["texture_mix"] = settings.texture_mix
+        if shader is not None:
+            self.read_alpha(surface, reader, nodes.input_named(shader, "Alpha"))
         return surface
 
     def shader_of(self, material):
@@ -74,7 +85,7 @@ class MaterialReader:
             return None
         surface = nodes.input_named(output, "Surface")
         upstream = nodes.nodes_before(surface)
-        shader = next((node for node in upstream if node.type in SHADERS), None)
+        shader = nearest_shader(upstream)
         if shader is None:
             self.warn(f"{material.name_full}: no Principled BSDF; its viewport colour is used")
         elif upstream[0] is not shader:
@@ -113,25 +124,55 @@ class MaterialReader:
 
         for name in IGNORED_WEIGHTS:
             if socket(name) is not None and (socket(name).is_linked or constant_of_or_zero(socket(name)) > 0):
-                if name != "Emission Strength" or is_emissive(socket("Emission Color")):
-                    self.warn(f"{surface.name}: '{name}' is not exported")
-        if socket("Alpha").is_linked or constant_of_or_zero(socket("Alpha")) < 1:
-            self.warn(f"{surface.name}: 'Alpha' is not exported; the surface is opaque")
+                self.warn(f"{surface.name}: '{name}' is not exported")
         weight = unit_clamp(reader.value(socket("Subsurface Weight")))
         metallic = unit_clamp(reader.value(socket("Metallic")))
         is_translucent = reads_medium and weight != 0 and metallic != 1
         if is_translucent and metallic != 0:
             self.warn(f"{surface.name}: 'Metallic' is ignored below a translucent surface")
-        color = unit_clamp(reader.value(socket("Base Color")))
         specular = self.specular_keys(reader, shader)
         if is_translucent:
+            color = unit_clamp(reader.value(socket("Base Color")))
             surface.medium = self.medium_keys(surface, reader, shader, weight, color) | specular
         else:
-            surface.shape["reflectance"] = color
+            self.read_reflectance(surface, reader, socket("Base Color"))
             if metallic != 0 or specular["specular_weight"] != 0:
                 surface.shape |= specular | {"metalness": metallic}
             else:
                 surface.shape |= {key: value for key, value in specular.items() if key.startswith("fuzz")}
+
+    def read_reflectance(self, surface, reader, socket):
+        """Colour of an opaque surface."""
+        surface.color_attribute = nodes.color_attribute_of(socket)
+        if surface.color_attribute is None:
+            surface.shape["reflectance"] = unit_clamp(reader.value(socket))
+
+    def read_emission(self, surface, reader, shader):
+        """Emitted radiance: the strength is the radiance of a white colour, for any unit."""
+        color_socket, strength_socket = (nodes.input_named(shader, name) for name in EMISSION_SOCKETS[shader.type])
+        strength = reader.number(strength_socket)
+        if strength <= 0:
+            return
+        color = reader.value(color_socket)
+        if isinstance(color, dict):
+            surface.shape["emission"] = color | {"scale": strength}
+        elif any(part > 0 for part in color):
+            surface.shape["emission"] = [max(part * strength, 0.0) for part in color]
+
+    def read_alpha(self, surface, reader, socket):
+        """Opaque surfaces have holes where alpha is low."""
+        alpha = reader.value(socket) if socket is not None else 1.0
+        if alpha == 1:
+            return
+        if surface.medium is not None or "emission" in surface.shape:
+            self.warn(f"{surface.name}: 'Alpha' is not exported; a translucent or emitting surface has no holes")
+            return
+        if alpha != 0:
+            self.warn(f"{surface.name}: 'Alpha' below {HOLE_ALPHA} is a hole, and the rest is opaque")
+        if isinstance(alpha, dict):
+            surface.shape["opacity"] = alpha
+        else:
+            surface.is_hole = alpha < HOLE_ALPHA
 
     def specular_keys(self, reader, shader):
         """The dielectric boundary and the sheen of a Principled BSDF."""
@@ -195,17 +236,28 @@ class MaterialReader:
 
     def use_preset(self, surface, reader, shader, preset):
         """A measured medium, with the roughness of the Principled BSDF."""
-        surface.medium = {"preset": preset}
+        surface.medium, surface.color_attribute = {"preset": preset}, None
         if shader is not None and shader.type == "BSDF_PRINCIPLED":
             surface.medium["specular_roughness"] = unit_clamp(reader.value(nodes.input_named(shader, "Roughness")))
-        surface.shape = {key: value for key, value in surface.shape.items() if key in {"normal_map", "bump_map"}}
+        surface.shape = {key: value for key, value in surface.shape.items() if key in KEYS_OF_ANY_SHAPE}
+
+
+def nearest_shader(upstream):
+    """The first supported shader, or else the first emission, of these nodes; None without one."""
+    return next((node for node in upstream if node.type in SHADERS),
+                next((node for node in upstream if node.type == "EMISSION"), None))
+
+
+def is_emitter(material):
+    """True if surfaces of a material emit light."""
+    output = nodes.active_output(material.node_tree, "OUTPUT_MATERIAL") if material and material.node_tree else None
+    shader = nearest_shader(nodes.nodes_before(nodes.input_named(output, "Surface"))) if output is not None else None
+    if shader is None or shader.type not in EMISSION_SOCKETS:
+        return False
+    color, strength = (nodes.input_named(shader, name) for name in EMISSION_SOCKETS[shader.type])
+    return (strength.is_linked or nodes.constant_of(strength) > 0) and (color.is_linked or any(nodes.constant_of(color)))
 
 
 def constant_of_or_zero(socket):
     value = nodes.constant_of(socket)
     return value if isinstance(value, float) else 0.0
-
-
-def is_emissive(socket):
-    """True unless the emission is a constant black."""
-    return socket is None or socket.is_linked or any(nodes.constant_of(socket))

@@ -24,6 +24,22 @@ def read_into(collection, attribute, count, kind, width):
     return values.reshape(count, width)
 
 
+def corner_colors(mesh, vertex_of, name):
+    """Linear colours of an attribute at the corners of the faces; black without it, as in Cycles."""
+    layers = mesh.color_attributes
+    number = layers.find(name) if name else layers.render_color_index
+    if not 0 <= number < len(layers):
+        return np.zeros((len(vertex_of), 3), np.float32)
+    layer = layers[number]
+    colors = read_into(layer.data, "color", len(layer.data), np.float32, 4)[:, :3]
+    return colors if layer.domain == "CORNER" else colors[vertex_of]
+
+
+def is_open(mesh):
+    """True if an edge has one face."""
+    return bool((np.bincount(read_into(mesh.loops, "edge_index", len(mesh.loops), np.int32, 1)[:, 0]) == 1).any())
+
+
 def corner_attributes(mesh, vertex_of, with_tangents):
     """Attributes at the corners of the faces, by their glTF names."""
     count = len(mesh.loops)
@@ -57,8 +73,11 @@ def merged_corners(attributes, vertex_of, vertex_count):
     return np.where(is_same, candidate, corners)
 
 
-def primitives_of(mesh, with_tangents):
-    """Triangles by material index: {index: (attributes, vertex indices)}, with equal corners of a vertex merged."""
+def primitives_of(mesh, with_tangents, color_attributes=(None,)):
+    """Triangles by material index: {index: (attributes, vertex indices)}, with equal corners of a vertex merged.
+
+    color_attributes: by material index, the last for all further ones; None: without colours.
+    """
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
     if count == 0:
@@ -67,7 +86,9 @@ def primitives_of(mesh, with_tangents):
     materials = read_into(mesh.loop_triangles, "material_index", count, np.int32, 1)[:, 0]
     vertex_of = read_into(mesh.loops, "vertex_index", len(mesh.loops), np.int32, 1)[:, 0]
     attributes = corner_attributes(mesh, vertex_of, with_tangents)
-    merged = merged_corners(attributes, vertex_of, len(mesh.vertices))
+    colors = {name: corner_colors(mesh, vertex_of, name) for name in set(color_attributes) - {None}}
+    merged = merged_corners(attributes | {("color", name): values for name, values in colors.items()}, vertex_of,
+                            len(mesh.vertices))
     primitives = {}
     for material in np.unique(materials):
         wanted = merged[corners[materials == material].reshape(-1)]
@@ -75,6 +96,9 @@ def primitives_of(mesh, with_tangents):
         is_used[wanted] = True
         number = np.cumsum(is_used) - 1
         part = {name: values[is_used] for name, values in attributes.items()}
+        name = color_attributes[min(material, len(color_attributes) - 1)]
+        if name is not None:
+            part["COLOR_0"] = colors[name][is_used]
         primitives[int(material)] = (part, number[wanted].astype(np.uint32))
     return primitives
 
@@ -124,18 +148,19 @@ class MeshFiles:
         self.folder = folder
         self.written = {}
 
-    def parts_of(self, key, evaluated, with_tangents, depsgraph):
-        """Path of the file, and {material index: primitive} of an evaluated object; None without faces."""
+    def parts_of(self, key, evaluated, with_tangents, color_attributes, depsgraph):
+        """Path of the file, {material index: primitive} and is_open of an evaluated object; None without faces."""
         if key not in self.written:
-            self.written[key] = self.write(evaluated, with_tangents, depsgraph)
+            self.written[key] = self.write(evaluated, with_tangents, color_attributes, depsgraph)
         return self.written[key]
 
-    def write(self, evaluated, with_tangents, depsgraph):
+    def write(self, evaluated, with_tangents, color_attributes, depsgraph):
         mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
         if mesh is None:
             return None
         try:
-            primitives = primitives_of(mesh, with_tangents)
+            primitives = primitives_of(mesh, with_tangents, color_attributes)
+            has_border = is_open(mesh)
         finally:
             evaluated.to_mesh_clear()
         if not primitives or not has_finite(primitives):
@@ -145,4 +170,4 @@ class MeshFiles:
         if not os.path.exists(path):
             with open(path, "wb") as file:
                 file.write(data)
-        return path, {material: number for number, material in enumerate(primitives)}
+        return path, {material: number for number, material in enumerate(primitives)}, has_border

@@ -48,6 +48,18 @@ def nodes_before(socket):
     return found
 
 
+def color_attribute_of(socket):
+    """Name of the colour attribute linked to a socket, "" for the one that the mesh renders with; None without a link."""
+    origin = source_of(socket)
+    if origin is None or origin.name != "Color":
+        return None
+    if origin.node.type == "VERTEX_COLOR":
+        return origin.node.layer_name
+    if origin.node.type == "ATTRIBUTE" and origin.node.attribute_type == "GEOMETRY":
+        return origin.node.attribute_name or None
+    return None
+
+
 def uv_transform(mapping):
     """Keys of a texture for a Mapping node: glTF's transform of UVs with v downwards."""
     if mapping.vector_type != "POINT":
@@ -114,14 +126,14 @@ class SocketReader:
         origin = source_of(socket)
         if origin is None:
             return constant_of(socket)
+        wants_color = hasattr(socket.default_value, "__len__")
         if origin.node.type in CONSTANT_NODES:
             value = constant_of(origin)
-            wants_color = hasattr(socket.default_value, "__len__")
             if wants_color and not isinstance(value, list):
                 return [value] * 3
             return value if wants_color or not isinstance(value, list) else sum(value) / 3
         texture = self.texture(origin) if may_be_texture else None
-        if texture is None:
+        if texture is None or (wants_color and "channel" in texture):
             self.warn(f"{self.owner}: {origin.node.name} is not exported; '{socket.name}' is constant")
             return constant_of(socket)
         return texture

@@ -55,7 +55,7 @@ class SceneExport:
         self.images = ImageFiles(folder)
         self.meshes = MeshFiles(folder)
         self.materials = MaterialReader(self.images, self.mm_per_unit, self.warn)
-        self.names, self.light_names = UniqueNames(), UniqueNames(RESERVED_LIGHTS)
+        self.names = UniqueNames(RESERVED_LIGHTS)  # of shapes and lights: an emitting shape is a light
         self.media, self.shapes, self.lights = {}, [], []
 
     def warn(self, text):
@@ -78,7 +78,7 @@ class SceneExport:
         data = evaluated.data
         if data.type == "AREA" and getattr(getattr(data, "cycles", None), "is_portal", False):
             return
-        name = self.light_names.take(evaluated.name_full)
+        name = self.names.take(evaluated.name_full)
         keys = light_keys(name, data, instance.matrix_world, self.mm_per_unit, evaluated.visible_camera, self.warn)
         if keys is not None:
             self.lights.append(keys)
@@ -88,18 +88,24 @@ class SceneExport:
         surfaces = surfaces or [self.materials.surface_of(None)]
         needs_tangents = any(surface.needs_tangents for surface in surfaces)
         key = evaluated.original.name_full if evaluated.original is not None else evaluated.name_full
-        written = self.meshes.parts_of((evaluated.type, key), evaluated, needs_tangents, self.depsgraph)
+        color_attributes = [surface.color_attribute for surface in surfaces]
+        written = self.meshes.parts_of((evaluated.type, key), evaluated, needs_tangents, color_attributes, self.depsgraph)
         if written is None:
             return
         matrix = np.array(conventions.matrix_rows(instance.matrix_world))
         if abs(np.linalg.det(matrix[:, :3])) < 1e-30:
             self.warn(f"{evaluated.name}: scaled to nothing, not exported")
             return
-        path, parts = written
+        path, parts, is_open = written
         name = self.names.take(evaluated.name_full)
-        shapes = [self.shape_keys(name if number == 0 else self.names.take(f"{name}/{number}"), path, number, matrix,
-                                  surfaces[min(material, len(surfaces) - 1)], evaluated)
-                  for material, number in parts.items()]
+        shapes = []
+        for material, number in parts.items():
+            surface = surfaces[min(material, len(surfaces) - 1)]
+            if not surface.is_hole:
+                part_name = name if number == 0 else self.names.take(f"{name}/{number}")
+                shapes.append(self.shape_keys(part_name, path, number, matrix, surface, evaluated))
+        if is_open and any("emission" in shape for shape in shapes):
+            self.warn(f"{name}: an open mesh emits on the side of its normals alone")
         self.join_bodies(name, shapes)
         self.shapes += shapes
 
@@ -109,6 +115,8 @@ class SceneExport:
         if surface.medium is not None:
             self.media[surface.name] = surface.medium
             keys["medium"] = surface.name
+        elif evaluated.is_shadow_catcher and "emission" in keys:
+            self.warn(f"{name}: an emitting surface is no shadow catcher")
         elif evaluated.is_shadow_catcher:
             keys["shadow_catcher"] = True
         if not evaluated.visible_camera:
@@ -132,7 +140,7 @@ class SceneExport:
         if surroundings is not None:
             keys["surroundings"] = surroundings
         if environment is not None:
-            environment["name"] = self.light_names.take(environment["name"])
+            environment["name"] = self.names.take(environment["name"])
             self.lights.append(environment)
         if is_transparent and (surroundings is not None or environment is not None):
             keys["backdrop"] = 0
@@ -188,6 +196,12 @@ def export_scene(depsgraph, folder, camera_object, name="scene.json"):
     path = os.path.join(folder, name)
     write_if_changed(path, json.dumps(keys, indent=1))
     return path, keys, export.warnings
+
+
+def light_names(keys):
+    """Names of the lights of an exported scene, with those of emitting shapes."""
+    return ([light["name"] for light in keys["lights"]] + (["surroundings"] if "surroundings" in keys else [])
+            + [shape["name"] for shape in keys["shapes"] if "emission" in shape])
 
 
 def layer_name(light):

@@ -8,7 +8,7 @@ import unittest
 import bpy
 import numpy as np
 
-from blender_scenes import (add_light, add_sphere, by_cycles, by_opaline, interior, new_image, new_scene,
+from blender_scenes import (add_floor, add_light, add_sphere, by_cycles, by_opaline, interior, new_image, new_scene,
                             principled, relative_difference, shader_of)
 from blender import images, meshes, scene_export
 from blender.exr_file import read_exr
@@ -105,6 +105,73 @@ class Materials(unittest.TestCase):
         for part in ("Transmission Weight", "Coat Weight", "Alpha", "spot light", "round area light", "spread"):
             self.assertTrue(any(part in text for text in warnings), part)
 
+    def linked(self, material, node, output, socket, **values):
+        """Links an output of a new node to a socket of the shader."""
+        made = material.node_tree.nodes.new(node)
+        for key, value in values.items():
+            setattr(made, key, value)
+        material.node_tree.links.new(made.outputs[output], shader_of(material).inputs[socket])
+        return made
+
+    def test_emission(self):
+        # Claim: the emission is colour times strength for any unit, also of a medium; textures have the strength as scale.
+        # Fails if it is dropped, or has the unit of an intensity.
+        scene = new_scene()
+        lamp = principled("lamp", Emission_Color=(1, 0.5, 0.25, 1), Emission_Strength=4)
+        add_sphere(lamp)
+        glow = wax(Emission_Strength=2)
+        self.linked(glow, "ShaderNodeTexImage", "Color", "Emission Color", image=new_image("glow", 4, 4, lambda u, v: (u, v, 1)))
+        add_sphere(glow, location=(3, 0, 0), name="glow")
+        add_sphere(principled("off", Emission_Color=(0, 0, 0, 1), Emission_Strength=4), name="off")
+        keys, warnings = exported(scene)
+        self.assertEqual(keys["shapes"][0]["emission"], [4, 2, 1])
+        self.assertEqual(keys["shapes"][1]["emission"]["scale"], 2)
+        self.assertEqual(keys["shapes"][1]["medium"], "wax")
+        self.assertNotIn("emission", keys["shapes"][2])
+        self.assertFalse(any("Emission" in text for text in warnings))
+
+    def test_emission_node(self):
+        # Claim: an Emission node is a black emitter, and the loss of one side of an open mesh is named.
+        scene = new_scene()
+        material = principled("lamp")
+        tree = material.node_tree
+        node = tree.nodes.new("ShaderNodeEmission")
+        node.inputs["Strength"].default_value = 3
+        output = next(each for each in tree.nodes if each.type == "OUTPUT_MATERIAL")
+        tree.links.new(node.outputs[0], output.inputs["Surface"])
+        add_floor(material)
+        keys, warnings = exported(scene)
+        self.assertEqual((keys["shapes"][0]["emission"], keys["shapes"][0]["reflectance"]), ([3, 3, 3], 0))
+        self.assertTrue(any("side of its normals" in text for text in warnings))
+
+    def test_alpha(self):
+        # Claim: alpha of an image is the opacity of opaque, dark surfaces; elsewhere its loss is named. A constant below 0.5
+        # is a hole everywhere. Fails if alpha is dropped, or written where the program refuses it.
+        for values, is_kept in (({}, True), ({"Emission_Strength": 1}, False), ({"Subsurface_Weight": 1}, False)):
+            scene = new_scene()
+            material = principled("leaf", **values)
+            image = new_image("leaf", 4, 4, lambda u, v: (u, v, 1))
+            self.linked(material, "ShaderNodeTexImage", "Alpha", "Alpha", image=image)
+            add_sphere(material)
+            keys, warnings = exported(scene)
+            self.assertEqual("opacity" in keys["shapes"][0], is_kept)
+            self.assertTrue(any("'Alpha'" in text for text in warnings))
+        for alpha, count in ((0.4, 1), (0.6, 2)):
+            scene = new_scene()
+            add_sphere(principled("veil", Alpha=alpha))
+            add_sphere(principled("grey"), name="other")
+            self.assertEqual(len(exported(scene)[0]["shapes"]), count)
+
+    def test_channel_of_a_color(self):
+        # Claim: a channel of an image is no colour of the scene file; its loss is named. Fails if it is written as one.
+        scene = new_scene()
+        material = principled("leaf")
+        self.linked(material, "ShaderNodeTexImage", "Alpha", "Base Color", image=new_image("leaf", 4, 4, lambda u, v: (u, v, 1)))
+        add_sphere(material)
+        keys, warnings = exported(scene)
+        np.testing.assert_allclose(keys["shapes"][0]["reflectance"], [0.6] * 3, rtol=1e-6)
+        self.assertTrue(any("'Base Color' is constant" in text for text in warnings))
+
     def test_packed_texture(self):
         # Claim: an image without a file is written with its linear texels. Fails if rows are exchanged.
         new_scene()
@@ -118,6 +185,34 @@ class Materials(unittest.TestCase):
 
 
 class Meshes(unittest.TestCase):
+    def test_color_attributes(self):
+        # Claim: linear colours of the attribute that the material names, by vertex or by corner; a measured medium has none.
+        # Fails if another attribute is taken, or sRGB values are written.
+        scene = new_scene()
+        ball = add_sphere(principled("painted"))
+        attributes = ball.data.color_attributes
+        attributes.new("other", "FLOAT_COLOR", "POINT")
+        for name, kind, domain in (("points", "FLOAT_COLOR", "POINT"), ("corners", "BYTE_COLOR", "CORNER")):
+            layer = attributes.new(name, kind, domain)
+            for item in layer.data:
+                item.color = (0.5, 0.25, 0.75, 1)
+        mesh = ball.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+        for name, tolerance in (("points", 1e-6), ("corners", 0.01)):
+            (part, _), = meshes.primitives_of(mesh, False, [name]).values()
+            self.assertEqual(len(part["COLOR_0"]), len(part["POSITION"]))
+            np.testing.assert_allclose(part["COLOR_0"], np.tile((0.5, 0.25, 0.75), (len(part["COLOR_0"]), 1)), rtol=tolerance)
+        material = ball.data.materials[0]
+        node = material.node_tree.nodes.new("ShaderNodeVertexColor")
+        node.layer_name = "points"
+        material.node_tree.links.new(node.outputs["Color"], shader_of(material).inputs["Base Color"])
+        painted, warnings = exported(scene)
+        self.assertEqual(warnings, [])
+        self.assertNotIn("reflectance", painted["shapes"][0])
+        material.opaline.medium = "marble"
+        material.update_tag()
+        stone, _ = exported(scene)
+        self.assertNotEqual(stone["shapes"][0]["file"], painted["shapes"][0]["file"])
+
     def test_modifiers_and_instances(self):
         # Claim: meshes have the modifiers of a render, and instances share a file. Fails if the viewport's mesh is taken.
         scene = new_scene()

@@ -136,6 +136,25 @@ class DiffuseLight(unittest.TestCase):
         light.data.normalize, light.data.exposure = False, 1
         self.check(scene)
 
+    def test_emitting_surface(self):
+        # A lamp of 4 x 2 units in front of the floor, out of view.
+        scene = self.scene()
+        add_floor(principled("lamp", (0, 0, 0), Emission_Color=(1, 0.5, 0.2, 1), Emission_Strength=5), 2).name = "lamp"
+        lamp = bpy.data.objects["lamp"]
+        lamp.location, lamp.rotation_euler, lamp.scale = (2.5, -1, 3), (math.radians(180), math.radians(30), 0), (1, 2, 1)
+        self.check(scene)
+
+    def test_emitting_texture(self):
+        # Fails if texels are read as sRGB twice, or without the strength.
+        scene = self.scene()
+        material = principled("lamp", (0, 0, 0), Emission_Strength=5)
+        picture = material.node_tree.nodes.new("ShaderNodeTexImage")
+        picture.image = new_image("glow", 64, 64, lambda u, v: (u, v, 0.3))
+        material.node_tree.links.new(picture.outputs["Color"], shader_of(material).inputs["Emission Color"])
+        lamp = add_floor(material, 2)
+        lamp.location, lamp.rotation_euler = (2.5, -1, 3), (math.radians(180), math.radians(30), 0)
+        self.check(scene, samples=256)
+
     def test_size_of_unit(self):
         # Claim: diffuse light does not depend on the unit. Fails if intensities are not multiplied by mm_per_unit^2.
         scene = self.scene()
@@ -235,6 +254,43 @@ class Textures(unittest.TestCase):
         steep = np.abs(a - b).max(axis=1) > 0.05  # at the seam of the repeated texture
         self.assertLess(steep.mean(), 0.05)
         self.assertLess(np.abs(a - b)[~steep].mean(), 0.005)
+
+    def test_color_attribute(self):
+        # Claim: colours of the vertices are the albedo of Cycles. Tolerance: 0.01 of the albedo. Fails if they are read as
+        # sRGB, or lie at other corners.
+        scene = new_scene(96, 72)
+        material = principled("painted")
+        node = material.node_tree.nodes.new("ShaderNodeVertexColor")
+        node.layer_name = "paint"
+        material.node_tree.links.new(node.outputs["Color"], shader_of(material).inputs["Base Color"])
+        floor = add_floor(material, 4)
+        layer = floor.data.color_attributes.new("paint", "BYTE_COLOR", "CORNER")
+        for item, color in zip(layer.data, ((0.9, 0.1, 0.1), (0.1, 0.9, 0.1), (0.1, 0.1, 0.9), (0.9, 0.9, 0.1))):
+            item.color = (*color, 1)
+        add_light("SUN", 1)
+        scene.view_layers[0].use_pass_diffuse_color = True
+        ours, theirs = by_opaline(scene), by_cycles(scene, 16)
+        pixels = interior(ours, theirs)
+        a, b = ours.layer(ALBEDO_PASS)[pixels], theirs.layer(ALBEDO_PASS)[pixels]
+        self.assertGreater(b.std(axis=0)[0], 0.05)
+        self.assertLess(np.abs(a - b).mean(), 0.01)
+
+    def test_holes(self):
+        # Claim: a floor has holes where the alpha of its image is low, as in Cycles. Tolerance: 1 % of the covered area.
+        # Fails if alpha is dropped: then the area is twice that.
+        scene = new_scene(96, 72)
+        material = principled("grid")
+        picture = material.node_tree.nodes.new("ShaderNodeTexImage")
+        picture.image = new_image("alpha", 64, 64, lambda u, v: (int(8 * u + 1) % 2,) * 3, is_float=True, is_data=True)
+        picture.interpolation = "Closest"
+        material.node_tree.links.new(picture.outputs["Color"], shader_of(material).inputs["Alpha"])
+        add_floor(material, 4)
+        add_light("SUN", 1)
+        scene.opaline.samples = 64
+        ours, theirs = by_opaline(scene), by_cycles(scene, 64)
+        area = abs(ours.alpha.sum() / theirs.alpha.sum() - 1)
+        print(f"test_holes: covered area {100 * area:.3f} %")
+        self.assertLess(area, 0.01)
 
     def render_normals(self, name, texel, **values):
         """A floor turned by 0.5 in a low sun, with normals of an image through a Normal Map or a Bump node."""

@@ -57,6 +57,16 @@ class Passes(unittest.TestCase):
         covered = self.ours.alpha == 1
         self.assertLess(np.abs(total - self.ours.color)[covered].max(), 1e-4 * self.ours.color.max())
 
+    def test_emitting_surface(self):
+        # Claim: an emitting surface has a light pass. Fails if it is not among the lights.
+        scene = new_scene(32, 24)
+        add_floor(principled("brown"))
+        add_sphere(principled("lamp", Emission_Strength=2), radius=0.3, name="lamp")
+        scene.view_layers[0].opaline.use_pass_lights = True
+        image = by_opaline(scene)
+        np.testing.assert_allclose(image.layer("Light lamp"), image.color, atol=1e-4)
+        self.assertGreater(image.color.max(), 1.9)
+
     def test_parts(self):
         total = self.ours.layer("Diffuse") + self.ours.layer("Specular")
         covered = self.ours.alpha == 1
