@@ -61,6 +61,7 @@ std::string scene_text(const AssetScene& scene, const std::string& asset) {
   json["shapes"] = scene.shapes;
   json["lights"] = scene.lights;
   json["camera"] = scene.camera;
+  if (scene.backdrop > 0) json["backdrop"] = scene.backdrop;
   json["film"] = scene.film;
   write(text, json, 0);
   return text + '\n';

@@ -99,7 +99,7 @@ symbolic links that leave the folder, unless --allow-outside is given. If a path
 machine, for example), opaline uses the file of the same name in the asset's folder.
 
 Without a camera, the image is a three-quarter view of the whole asset. Without lights, opaline adds a key, a fill and
-a rim light, which are invisible to the camera.
+a rim light, which are invisible to the camera, and a grey backdrop.
 
 Examples:
   opaline import statue.glb -o statue.json
