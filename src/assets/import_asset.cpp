@@ -106,7 +106,7 @@ ImportedAsset import_asset(const std::string& path, const std::string& mesh_path
             std::move(summary),
             scene.bytes,
             std::move(scene.textures),
-            {!own_camera, !own_lights, scene.center, scene.radius, scene.extent}};
+            {!own_camera, !own_lights, scene.center, scene.radius, scene.extent, scene.media.empty()}};
   } catch (const Json::exception&) {
     throw bad_file(path, "contains a name that is not UTF-8", "names in UTF-8");
   }
