@@ -36,7 +36,7 @@ std::string entry_in_any_case(const fs::path& folder, const std::string& name) {
   return found;
 }
 
-/// File by a relative path, whose names may differ in case if no file has them exactly; empty: none.
+/// File by a relative path. Its names may differ in case if no file has them exactly; empty: none.
 fs::path find_in_any_case(fs::path folder, const fs::path& relative) {
   for (const fs::path& name : relative) {
     const std::string entry =

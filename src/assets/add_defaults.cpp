@@ -32,6 +32,7 @@ struct DefaultLight {
 constexpr std::array<DefaultLight, 3> kLights{
     {{"key", {-.7, .7, .7}, .8, .52}, {"fill", {.9, .2, .8}, 1.2, .16}, {"rim", {.3, 1, -.8}, .6, .35}}};
 constexpr double kLightDistance = 4;  // over the asset's radius
+constexpr double kBackdrop = .1;      // between a diffuse surface's light and shadow
 constexpr double kWhite = .8;         // exposure of a white surface under the asset's own lights
 
 // Darkening of the PNG, stops, above which highlights may exceed the largest half, 65504.
@@ -88,7 +89,9 @@ void add_lights(AssetScene& scene) {
          {"radiance", light.white * ratio * ratio},
          {"visible", false}});
   }
-  scene.translated.push_back("no lights: adds default lights key, fill and rim around the asset");
+  scene.backdrop = kBackdrop;
+  scene.translated.push_back(
+      "no lights: adds default lights key, fill and rim around the asset, and a grey backdrop");
 }
 
 /// Exposure mapping a white surface, facing all lights at the asset's centre, to kWhite in the PNG.

@@ -24,11 +24,13 @@ using Json = nlohmann::ordered_json;
 struct AssetScene {
   double mm_per_unit = 1;
   Json media = Json::object(), shapes = Json::array(), lights = Json::array(), camera, film = Json::object();
-  Vec3d center;                  ///< center of the box around the shapes
-  double radius = 1;             ///< distance from there to the farthest vertex
-  double extent = 0;             ///< largest side of the box
-  double center_irradiance = 0;  ///< irradiance from its lights at the center, facing them
-  bool is_one_mesh = false;      ///< true if its shapes are parts of one body
+  std::vector<std::string> material_names;  ///< a name for each shape, or empty
+  Vec3d center;                             ///< center of the box around the shapes
+  double radius = 1;                        ///< distance from there to the farthest vertex
+  double extent = 0;                        ///< largest side of the box
+  double backdrop = 0;                      ///< grey behind the default lights; 0: none
+  double center_irradiance = 0;             ///< irradiance from its lights at the center, facing them
+  bool is_one_mesh = false;                 ///< true if its shapes are parts of one body
   bool has_vertex_colors = false;
   std::vector<std::string> translated, not_carried;
   std::vector<std::string> warnings;                         ///< changes of the image
@@ -62,6 +64,10 @@ struct AssetPlace {
 /// error Error{bad_input} naming the file: not XML, no such surface, a value of the wrong type
 SurfaceTranslation translate_materialx(const std::string& file_and_name, const AssetPlace& asset,
                                        AssetScene& scene);
+
+/// Materials of a MaterialX file with such a surface, by name.
+/// error as translate_materialx
+std::set<std::string> materialx_names(const std::string& file);
 
 AssetScene import_gltf(const std::string& path, const std::string& mesh_path, const std::string& animation);
 AssetScene import_obj(const std::string& path, const std::string& mesh_path);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "assets/asset_scene.h"
 #include "core/lower_case.h"
@@ -59,28 +61,62 @@ void check_extent(const std::string& path, const AssetScene& scene) {
                    fmt::format("{:.3g}", farthest));
 }
 
+/// in    name: of the surface's medium
+void replace_surface(const SurfaceTranslation& surface, const std::string& name, const AssetScene& scene,
+                     Json& shape) {
+  Json bare = Json::object();
+  for (const char* key :
+       {"name", "file", "part", "animation", "animation_time", "transform", "normals", "vertex_colors"})
+    if (shape.contains(key)) bare[key] = shape[key];
+  if (shape.contains("opacity") && surface.medium.is_null() && !surface.keys.contains("emission"))
+    bare["opacity"] = shape["opacity"];
+  shape = std::move(bare);
+  if (scene.has_vertex_colors) shape["vertex_colors"] = false;
+  if (surface.medium.is_null())
+    shape["reflectance"] = triple_json(surface.reflectance);
+  else
+    shape["medium"] = name;
+  for (const auto& [key, value] : surface.keys.items()) shape[key] = value;
+  if (!surface.medium.is_null() && scene.is_one_mesh && scene.shapes.size() > 1) shape["group"] = name;
+}
+
+/// Replaces the material of each shape by that of its name in the file.
+/// Returns false if no shape has such a material.
+bool replace_by_name(AssetScene& scene, const std::string& file, const AssetPlace& asset) {
+  std::map<std::string, SurfaceTranslation> surfaces;
+  const std::set<std::string> names = materialx_names(file);
+  for (const std::string& name : scene.material_names)
+    if (names.contains(name) && !surfaces.contains(name)) {
+      scene.translated.push_back(fmt::format("material '{}' -> {}#{}", name, file, name));
+      surfaces[name] = translate_materialx(file + '#' + name, asset, scene);
+    }
+  if (surfaces.empty()) return false;
+  for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+    const auto found = surfaces.find(scene.material_names[i]);
+    if (found != surfaces.end())
+      replace_surface(found->second, found->first, scene, scene.shapes[i]);
+    else
+      scene.warn(file,
+                 fmt::format("has no material '{}': it stays as in the asset", scene.material_names[i]));
+  }
+  Json media = Json::object();
+  for (const Json& shape : scene.shapes)
+    if (const std::string name = shape.value("medium", ""); !name.empty()) {
+      const auto found = surfaces.find(name);
+      media[name] = found != surfaces.end() ? found->second.medium : scene.media[name];
+    }
+  scene.media = std::move(media);
+  return true;
+}
+
 void replace_materials(AssetScene& scene, const std::string& material, const AssetPlace& asset) {
+  if (material.find('#') == material.npos && replace_by_name(scene, material, asset)) return;
   scene.translated.push_back("all materials of the asset -> " + in_quotes(material));
   const SurfaceTranslation surface = translate_materialx(material, asset, scene);
   constexpr const char* name = "material";
   scene.media = Json::object();
   if (!surface.medium.is_null()) scene.media[name] = surface.medium;
-  for (Json& shape : scene.shapes) {
-    Json bare = Json::object();
-    for (const char* key :
-         {"name", "file", "part", "animation", "animation_time", "transform", "normals", "vertex_colors"})
-      if (shape.contains(key)) bare[key] = shape[key];
-    if (shape.contains("opacity") && surface.medium.is_null() && !surface.keys.contains("emission"))
-      bare["opacity"] = shape["opacity"];
-    shape = std::move(bare);
-    if (scene.has_vertex_colors) shape["vertex_colors"] = false;
-    if (surface.medium.is_null())
-      shape["reflectance"] = triple_json(surface.reflectance);
-    else
-      shape["medium"] = name;
-    for (const auto& [key, value] : surface.keys.items()) shape[key] = value;
-    if (!surface.medium.is_null() && scene.is_one_mesh && scene.shapes.size() > 1) shape["group"] = name;
-  }
+  for (Json& shape : scene.shapes) replace_surface(surface, name, scene, shape);
 }
 
 }  // namespace
@@ -106,7 +142,7 @@ ImportedAsset import_asset(const std::string& path, const std::string& mesh_path
             std::move(summary),
             scene.bytes,
             std::move(scene.textures),
-            {!own_camera, !own_lights, scene.center, scene.radius, scene.extent}};
+            {!own_camera, !own_lights, scene.center, scene.radius, scene.extent, scene.media.empty()}};
   } catch (const Json::exception&) {
     throw bad_file(path, "contains a name that is not UTF-8", "names in UTF-8");
   }

@@ -14,18 +14,22 @@ namespace opaline {
 
 class TextureFile;
 
+/// settings.max_samples of an opaque asset, made translucent without a size: its unit is a guess.
+inline constexpr int kMostUnsizedSamples = 200000;
+
 /// Default camera and lights around an asset, in its unit.
 struct AssetDefaults {
   bool camera = false, lights = false;  ///< false: the asset has its own
   Vec3d center{};                       ///< centre of the sphere around the asset
   double radius = 1;
-  double extent = 0;  ///< largest side of the box around it
+  double extent = 0;    ///< largest side of the box around it
+  bool opaque = false;  ///< true without media of its own, in its unit
 };
 
 struct ImportedAsset {
   std::string text;                      ///< a scene file, see scenes/README.md
   std::vector<std::string> translated;   ///< conversions of values, a line each
-  std::vector<std::string> not_carried;  ///< parts without import, a line each
+  std::vector<std::string> not_carried;  ///< parts without import, and warnings, a line each
   std::vector<std::string> warnings;     ///< missing files and other changes of the image, a line each
   std::string summary;                   ///< one line, without the warnings
   std::size_t bytes = 0;                 ///< memory of its records during reading

@@ -207,6 +207,9 @@ class GltfImporter {
                           mesh_path_};
     add_surface(shape, use, placed, mesh.primitives.size() > 1);
     scene_.shapes.push_back(std::move(shape));
+    const bool has_material = primitive.material < gltf_.count("materials");
+    scene_.material_names.push_back(has_material ? gltf_.record("materials", primitive.material).text("name")
+                                                 : "");
     parts_.push_back({part, t, is_moving});
     scene_.translated.push_back(fmt::format(
         "{}, part {} of the asset -> shape {}{}{}", label, part, in_quotes(name),

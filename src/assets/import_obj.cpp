@@ -388,6 +388,7 @@ class ObjImporter {
     const std::string& material = used.name;
     const std::string name = names_.take(material == kNoMaterial ? "" : material, "shape");
     scene_.shapes.push_back({{"name", name}, {"file", mesh_path_}, {"part", material}});
+    scene_.material_names.push_back(material);
     const auto found = materials_.find(material);
     const Surface surface = found == materials_.end() ? Surface{} : surface_of(found->second);
     if (found == materials_.end() && material != kNoMaterial && !scene_.has_vertex_colors)

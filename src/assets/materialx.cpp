@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constants, bumps and fuzz of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body
+// Constants, images, bumps and fuzz of MaterialX's open_pbr_surface and standard_surface. Both describe a translucent body
 // by its diffuse colour and mean free paths, like the artist's medium of a scene file, so no inversion is
 // necessary.
 #include <fmt/format.h>
@@ -64,19 +64,22 @@ class SurfaceReader {
 
   SurfaceTranslation run() {
     SurfaceTranslation surface;
-    const Vec3d base = color(model_.base_color, Vec3d(.8)) * number(model_.base_weight, 1, 0, 1);
-    const double weight = number(model_.weight, 0, 0, 1);
+    const double base_weight = number(model_.base_weight, 1, 0, 1), weight = number(model_.weight, 0, 0, 1);
+    std::optional<Json> base_map = connected_texture(model_.base_color, true);
+    if (base_map && base_weight != 1) (*base_map)["scale"] = base_weight;
+    const Vec3d base = base_map ? Vec3d(base_weight) : color(model_.base_color, Vec3d(.8)) * base_weight;
     if (weight > 0) {
       surface.medium = make_medium();
       if (weight < 1) {
         surface.medium["subsurface_weight"] = weight;
-        surface.medium["base_color"] = triple_json(base);
+        surface.medium["base_color"] = base_map.value_or(triple_json(base));
         scene_.translated.push_back(
             fmt::format("{}: {} {:.3g} -> subsurface_weight; base colour -> base_color {} of the rest",
                         label_, model_.weight, weight, short_triple(base)));
       }
     } else {
       surface.reflectance = base;
+      if (base_map) surface.keys["reflectance"] = *base_map;
       scene_.translated.push_back(fmt::format("{}: {} 0, base colour -> reflectance {} (opaque)", label_,
                                               model_.weight, short_triple(base)));
       add_gloss(surface);
@@ -138,15 +141,18 @@ class SurfaceReader {
   }
 
   /// Adds anisotropy in OpenPBR's parametrization, the scene's own. Standard Surface divides and multiplies
-  /// alpha by the root of the alphas' ratio. Returns the roughness for it.
+  /// alpha by the root of the alphas' ratio. Returns the roughness for it, 1 beside roughness_map_.
   double add_grain(Json& keys) {
-    const double roughness = number("specular_roughness", model_.default_roughness, 0, 1);
+    roughness_map_ = connected_texture("specular_roughness", false);
+    const double roughness =
+        roughness_map_ ? 1 : number("specular_roughness", model_.default_roughness, 0, 1);
     const double anisotropy = number(model_.specular_anisotropy, 0, 0, 1),
                  rotation = model_.has_rotation ? number("specular_rotation", 0, 0, 1) * 360 : 0;
     if (!(anisotropy > 0)) return roughness;
     const double ratio = 1 - std::min(anisotropy, kMostSpecularAnisotropy);
     const double scale = model_.has_rotation ? std::pow((ratio + 1 / ratio) / 2, .25) : 1;
     const double mean = std::min(roughness * scale, 1.);
+    if (roughness_map_ && scale != 1) (*roughness_map_)["scale"] = scale;
     keys["specular_anisotropy"] = 1 - ratio;
     keys["specular_rotation"] = rotation;
     scene_.translated.push_back(fmt::format(
@@ -177,7 +183,7 @@ class SurfaceReader {
                  weight = number(model_.specular_weight, 1, 0, 1),
                  ior = number(model_.ior, 1.5, kLeastIor, kMostIor), roughness = add_grain(surface.keys);
     surface.keys["metalness"] = metalness;
-    surface.keys["specular_roughness"] = roughness;
+    surface.keys["specular_roughness"] = roughness_map_.value_or(roughness);
     surface.keys["specular_ior"] = ior;
     surface.keys["specular_weight"] = weight;
     scene_.translated.push_back(
@@ -187,7 +193,8 @@ class SurfaceReader {
   }
 
   Json make_medium() {
-    const Vec3d reflected = color(model_.color, model_.default_color);
+    const std::optional<Json> color_map = connected_texture(model_.color, true);
+    const Vec3d reflected = color_map ? Vec3d(1) : color(model_.color, model_.default_color);
     const Vec3d radius = lengths(model_.radius, Vec3d(1)) * lengths(model_.scale, model_.default_scale);
     const Vec3d radius_mm = radius * scene_.mm_per_unit;
     const double g = number(model_.anisotropy, 0, -kMostAnisotropy, kMostAnisotropy);
@@ -200,11 +207,11 @@ class SurfaceReader {
         "anisotropy {:.3g}, specular_ior {:.4g}, specular_roughness {:.3g}, specular_weight {:.3g}",
         label_, model_.color, short_triple(reflected), model_.radius, model_.scale, short_triple(radius),
         short_triple(radius_mm), g, ior, roughness, weight));
-    medium.update({{"subsurface_color", triple_json(reflected)},
+    medium.update({{"subsurface_color", color_map.value_or(triple_json(reflected))},
                    {"subsurface_radius", triple_json(radius_mm)},
                    {"subsurface_scatter_anisotropy", g},
                    {"specular_ior", ior},
-                   {"specular_roughness", roughness},
+                   {"specular_roughness", roughness_map_.value_or(roughness)},
                    {"specular_weight", weight}});
     return medium;
   }
@@ -295,6 +302,7 @@ class SurfaceReader {
   AssetScene& scene_;
   std::string label_;
   std::set<std::string> read_;
+  std::optional<Json> roughness_map_;
 };
 
 /// The surface itself, or that of the material with this name; without a name the first of the file.
@@ -316,23 +324,18 @@ std::string old_version(const pugi::xml_node& root) {
   return "MaterialX " + (is_old ? version : "1.37");
 }
 
-std::string surface_names(const pugi::xml_node& root) {
+/// Names of all surfaces but one.
+std::string surface_names(const pugi::xml_node& root, const pugi::xml_node& but = {}) {
   std::string names;
   for (const pugi::xml_node& node : root.children())
-    if (find_model(node) != nullptr)
+    if (find_model(node) != nullptr && node != but)
       names += (names.empty() ? "" : ", ") + in_quotes(node.attribute("name").value());
-  return names.empty() ? "a file with an open_pbr_surface or standard_surface" : "one of " + names;
+  return names;
 }
 
-}  // namespace
-
-SurfaceTranslation translate_materialx(const std::string& file_and_name, const AssetPlace& asset,
-                                       AssetScene& scene) {
-  const std::size_t hash = file_and_name.rfind('#');
-  const std::string file = file_and_name.substr(0, hash);
-  const std::string name = hash == file_and_name.npos ? "" : file_and_name.substr(hash + 1);
+/// Root of a MaterialX file.
+pugi::xml_node load(const std::string& file, pugi::xml_document& document) {
   const std::string bytes = read_asset_bytes(file);
-  pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer(bytes.data(), bytes.size());
   if (!result) {
     const auto line =
@@ -342,11 +345,39 @@ SurfaceTranslation translate_materialx(const std::string& file_and_name, const A
   }
   const pugi::xml_node root = document.child("materialx");
   if (!root) throw bad_file(file, "is not a MaterialX file", "the element materialx");
+  return root;
+}
+
+}  // namespace
+
+std::set<std::string> materialx_names(const std::string& file) {
+  pugi::xml_document document;
+  const pugi::xml_node root = load(file, document);
+  std::set<std::string> names;
+  for (const pugi::xml_node& material : root.children("surfacematerial"))
+    if (const std::string name = material.attribute("name").value(); find_surface(root, name))
+      names.insert(name);
+  return names;
+}
+
+SurfaceTranslation translate_materialx(const std::string& file_and_name, const AssetPlace& asset,
+                                       AssetScene& scene) {
+  const std::size_t hash = file_and_name.rfind('#');
+  const std::string file = file_and_name.substr(0, hash);
+  const std::string name = hash == file_and_name.npos ? "" : file_and_name.substr(hash + 1);
+  pugi::xml_document document;
+  const pugi::xml_node root = load(file, document);
   const pugi::xml_node surface = find_surface(root, name);
   if (const std::string version = old_version(root); !surface && !version.empty())
     throw bad_file(file, version + " syntax; save it as 1.38");
-  if (!surface)
-    throw bad_file(file, "has no such surface", surface_names(root), name.empty() ? "" : in_quotes(name));
+  if (const std::string others = surface_names(root, surface); !surface)
+    throw bad_file(
+        file, "has no such surface",
+        others.empty() ? "a file with an open_pbr_surface or standard_surface" : "one of " + others,
+        name.empty() ? "" : in_quotes(name));
+  else if (name.empty() && !others.empty())
+    scene.warn(file, fmt::format("{} is the material of all shapes; others of the file, by FILE#NAME: {}",
+                                 in_quotes(surface.attribute("name").value()), others));
   return SurfaceReader(file, surface, *find_model(surface), asset, scene).run();
 }
 

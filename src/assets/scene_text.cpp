@@ -55,11 +55,13 @@ std::string UniqueNames::take(const std::string& wanted, const std::string& othe
 
 std::string scene_text(const AssetScene& scene, const std::string& asset) {
   std::string text = "// Translated from " + in_quotes(asset) + ".\n";
-  for (const std::string& line : scene.not_carried) text += "// Not imported: " + line + '\n';
+  for (const std::string& line : scene.not_carried)
+    text += (scene.warned.contains(line) ? "// Warning: " : "// Not imported: ") + line + '\n';
   Json json{{"mm_per_unit", scene.mm_per_unit}};
   if (!scene.media.empty()) json["media"] = scene.media;
   json["shapes"] = scene.shapes;
   json["lights"] = scene.lights;
+  if (scene.backdrop > 0) json["backdrop"] = scene.backdrop;
   json["camera"] = scene.camera;
   json["film"] = scene.film;
   write(text, json, 0);

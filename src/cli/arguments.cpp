@@ -374,7 +374,7 @@ void add_commands(CLI::App& app, Parsed& parsed) {
   add_picture_options(info, options);
   add_import_options(
       command("import", "convert an asset (.glb, .gltf, .obj, .ply, .stl, .off) to a scene file for editing"),
-      parsed.import);
+      parsed.import, options);
   add_compare_options(command("compare", "compare an image with a reference"), parsed.compare, options);
   add_bench_options(command("bench", "measure cost and error of scenes at many settings"), parsed.bench,
                     options);
@@ -410,6 +410,18 @@ RenderArguments checked(RenderArguments render, const Options& options) {
   return render;
 }
 
+/// The overrides, with that of --size.
+std::vector<std::string> sized_overrides(const Options& options, const std::string& scene) {
+  std::vector<std::string> overrides = overrides_of(options, scene);
+  if (!options.size) return overrides;
+  if (scene.empty()) throw usage_error("--size needs a scene", "SCENE");
+  if (std::ranges::any_of(options.sets,
+                          [](const std::string& text) { return text.starts_with("mm_per_unit="); }))
+    throw usage_error("--size sets mm_per_unit, which is given, too", "one of the two");
+  overrides.push_back(size_override(scene, overrides, *options.size));
+  return overrides;
+}
+
 Command command_of(const std::string& name, Parsed parsed) {
   const Options& options = parsed.options;
   const auto with_log = [&](auto arguments) {
@@ -417,14 +429,7 @@ Command command_of(const std::string& name, Parsed parsed) {
     return arguments;
   };
   const auto with_overrides = [&](auto arguments) {
-    arguments.overrides = overrides_of(options, arguments.scene);
-    if (options.size) {
-      if (arguments.scene.empty()) throw usage_error("--size needs a scene", "SCENE");
-      if (std::ranges::any_of(options.sets,
-                              [](const std::string& text) { return text.starts_with("mm_per_unit="); }))
-        throw usage_error("--size sets mm_per_unit, which is given, too", "one of the two");
-      arguments.overrides.push_back(size_override(arguments.scene, arguments.overrides, *options.size));
-    }
+    arguments.overrides = sized_overrides(options, arguments.scene);
     return with_log(std::move(arguments));
   };
   const auto with_frames = [&](auto arguments) {
@@ -432,7 +437,11 @@ Command command_of(const std::string& name, Parsed parsed) {
     return with_overrides(std::move(arguments));
   };
   if (name == "compare") return checked(with_log(std::move(parsed.compare)), options);
-  if (name == "import") return checked(std::move(parsed.import));
+  if (name == "import") {
+    ImportArguments import = checked(std::move(parsed.import));
+    import.overrides = sized_overrides(options, import.asset);
+    return import;
+  }
   if (name == "cache") return with_log(std::move(parsed.cache));
   parsed.profile.command_line = parsed.bench.command_line = parsed.words;
   if (name == "profile") return with_log(std::move(parsed.profile));

@@ -77,9 +77,10 @@ struct PrecomputeArguments {
 /// Converts an asset of another program into a scene file.
 struct ImportArguments {
   std::string asset;
-  std::string scene;       ///< output
-  std::string material;    ///< MaterialX, replacing the asset's materials; empty: none
-  std::string animation;   ///< name or index of a glTF animation; empty: the first
+  std::string scene;      ///< output
+  std::string material;   ///< MaterialX, replacing the asset's materials; empty: none
+  std::string animation;  ///< name or index of a glTF animation; empty: the first
+  std::vector<std::string> overrides = {};
   bool overwrite = false;  ///< replaces an existing scene with other contents
   Log log;
 };

@@ -16,10 +16,14 @@
 namespace opaline {
 namespace {
 
-/// Largest side of the box around all shapes, scene units.
+/// Largest side of the box around the shapes of the file, scene units. Excludes shapes appended by overrides.
 double extent_of(const std::string& path, const std::vector<std::string>& overrides) {
   if (is_asset_name(path) && overrides.empty()) return import_asset(path, path).defaults.extent;
-  const Scene scene = load_scene(path, overrides);
+  Scene scene = load_scene(path, overrides);
+  const bool appends =
+      std::ranges::any_of(overrides, [](const std::string& text) { return text.starts_with("shapes.+"); });
+  if (const std::size_t own = appends ? load_scene(path).shapes.size() : 0; own > 0)
+    scene.shapes.resize(std::min(own, scene.shapes.size()));
   Bounds all;
   for (const Bounds& box : make_world(scene).boxes) {
     all.low = component_min(all.low, box.low);
@@ -28,7 +32,7 @@ double extent_of(const std::string& path, const std::vector<std::string>& overri
   return scene.shapes.empty() ? 0 : max_component(all.high - all.low) / scene.mm_per_unit;
 }
 
-/// False for assets and files that are no scenes; reading them reports the latter.
+/// False for assets and files without a scene; reading them reports the latter.
 bool has_medium(const std::string& path, const std::string& name) {
   if (is_asset_name(path)) return false;
   try {
@@ -46,8 +50,14 @@ std::vector<std::string> medium_overrides(const std::string& scene, const std::s
   const std::string medium = option.substr(equals + 1),  // npos + 1 is 0
       shape = equals == option.npos ? "*" : option.substr(0, equals);
   std::vector<std::string> overrides;
-  if (std::ranges::find(presets(), medium, &Preset::name) != presets().end() && !has_medium(scene, medium))
+  const auto has = [&](std::span<const Preset> all) {
+    return std::ranges::find(all, medium, &Preset::name) != all.end();
+  };
+  if (has(presets()) && !has_medium(scene, medium)) {
     overrides.push_back(fmt::format("media.{0}.preset={0}", medium));
+    if (has(measured_presets()))
+      overrides.push_back(fmt::format("media.{}.specular_roughness={}", medium, kMeasuredRoughness));
+  }
   overrides.push_back(fmt::format("shapes.{}.medium={}", shape, medium));
   return overrides;
 }

@@ -7,7 +7,8 @@
 
 namespace opaline {
 
-/// "marble": all shapes; "wick=marble": one. A preset becomes a medium of its name, unless the scene file has one.
+/// "marble": all shapes; "wick=marble": one. A preset becomes a medium of its name, unless the scene file has one; a
+/// measured one with a satin boundary.
 std::vector<std::string> medium_overrides(const std::string& scene, const std::string& option);
 
 /// Sets mm_per_unit for shapes of this largest side together, mm. Reads the scene with the overrides.

@@ -107,6 +107,17 @@ void add_image_options(CLI::App& app, RenderArguments& render, Options& options,
       ->group("Quality");
 }
 
+void add_asset_options(CLI::App& app, Options& options) {
+  add_repeatable(app, "--medium", options.media,
+                 "medium of all shapes, or of one (SHAPE=NAME): a preset such as marble, or a medium of the "
+                 "scene; repeatable")
+      ->type_name("NAME");
+  app.add_option("--size", options.size,
+                 "largest side of the box around all shapes of the file, e.g. 50mm or 1.7m; sets mm_per_unit")
+      ->transform(millimetres_of())
+      ->type_name("LENGTH");
+}
+
 void add_common_options(CLI::App& app, std::string& scene, Options& options) {
   app.add_option("SCENE", scene,
                  "scene file (JSON with comments) or asset (.glb, .gltf, .obj, .ply, .stl, .off)")
@@ -115,14 +126,7 @@ void add_common_options(CLI::App& app, std::string& scene, Options& options) {
   add_repeatable(app, "--set", options.sets,
                  "override a value of the scene, e.g. media.marble.specular_ior=1.4; repeatable")
       ->type_name("KEY=VALUE");
-  add_repeatable(app, "--medium", options.media,
-                 "medium of all shapes, or of one (SHAPE=NAME): a preset such as marble, or a medium of the "
-                 "scene; repeatable")
-      ->type_name("NAME");
-  app.add_option("--size", options.size,
-                 "largest side of the box around all shapes, e.g. 50mm or 1.7m; sets mm_per_unit")
-      ->transform(millimetres_of())
-      ->type_name("LENGTH");
+  add_asset_options(app, options);
   add_allow_outside(app);
   add_log_option(app, options);
 }

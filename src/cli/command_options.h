@@ -38,13 +38,15 @@ std::string_view option_of_key(std::string_view key);
 /// Key of an option: "--crop" -> "film.crop"; empty if there is none.
 std::string_view key_of_option(std::string_view option);
 
+/// --medium and --size.
+void add_asset_options(CLI::App& app, Options& options);
 void add_common_options(CLI::App& app, std::string& scene, Options& options);
 void add_picture_options(CLI::App& app, Options& options);
 void add_render_options(CLI::App& app, RenderArguments& render, Options& options);
 void add_turntable_options(CLI::App& app, RenderArguments& render, Options& options);
 void add_merge_options(CLI::App& app, MergeArguments& merge, Options& options);
 void add_precompute_options(CLI::App& app, PrecomputeArguments& precompute, Options& options);
-void add_import_options(CLI::App& app, ImportArguments& import);
+void add_import_options(CLI::App& app, ImportArguments& import, Options& options);
 void add_view_options(CLI::App& app, ViewArguments& view, Options& options);
 void add_compare_options(CLI::App& app, CompareArguments& compare, Options& options);
 void add_bench_options(CLI::App& app, BenchArguments& bench, Options& options);

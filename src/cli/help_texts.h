@@ -88,7 +88,7 @@ conversion of a value, or a part that is not imported.
           sigma_a and sigma_s in 1/mm. Other materials are opaque, with base colour, metalness, roughness and
           specularFactor. Textures may be in the asset or in separate files; samplers are ignored. Lengths are metres.
           1 candela becomes 1e6 W/sr and 1 lux becomes 1 W/mm^2; the exposure of the PNG adapts to the brightness.
-  .mtlx   the constants and the bump of open_pbr_surface and standard_surface. A material with subsurface scattering becomes a
+  .mtlx   the constants, images and bump of open_pbr_surface and standard_surface. A material with subsurface scattering becomes a
           medium with subsurface_color and subsurface_radius, in the asset's unit; others are opaque, with base
           colour, metalness and specular reflection.
   OBJ     meshes, one shape per usemtl, with Kd, map_Kd and the bump map of its MTL. Lengths are read as millimetres.
@@ -99,7 +99,7 @@ symbolic links that leave the folder, unless --allow-outside is given. If a path
 machine, for example), opaline uses the file of the same name in the asset's folder.
 
 Without a camera, the image is a three-quarter view of the whole asset. Without lights, opaline adds a key, a fill and
-a rim light, which are invisible to the camera.
+a rim light, which are invisible to the camera, and a grey backdrop.
 
 Examples:
   opaline import statue.glb -o statue.json

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <filesystem>
 
 #include "assets/import_asset.h"
@@ -27,12 +28,18 @@ void import_command(const ImportArguments& arguments) {
                                            arguments.material, arguments.animation);
   if (!arguments.log.quiet)
     for (const std::string& line : asset.translated) write_line(stderr, line);
-  for (const std::string& line : asset.not_carried) write_line(stderr, "not imported: " + line);
-  parse_scene(asset.text, arguments.scene);
+  for (const std::string& line : asset.warnings) print_warning(arguments.log, line);
+  const auto is_warning = [&](const std::string& line) {
+    return std::ranges::any_of(asset.warnings, [&](const auto& text) { return text.ends_with(": " + line); });
+  };
+  for (const std::string& line : asset.not_carried)
+    if (!is_warning(line)) write_line(stderr, "not imported: " + line);
+  const std::string text = edited_scene(asset.text, arguments.scene, arguments.overrides);
+  parse_scene(text, arguments.scene);
   if (!arguments.overwrite && fs::is_regular_file(arguments.scene) &&
-      read_scene_text(arguments.scene) != asset.text)
+      read_scene_text(arguments.scene) != text)
     throw bad_file(arguments.scene, "exists with different content", "another name, or --overwrite");
-  write_file(arguments.scene, asset.text);
+  write_file(arguments.scene, text);
   if (!arguments.log.quiet) write_line(stdout, arguments.scene + ": " + asset.summary);
 }
 

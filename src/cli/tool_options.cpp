@@ -7,18 +7,20 @@
 
 namespace opaline {
 
-void add_import_options(CLI::App& app, ImportArguments& import) {
+void add_import_options(CLI::App& app, ImportArguments& import, Options& options) {
   app.add_option("ASSET", import.asset, "GLB, glTF 2.0, OBJ, PLY, STL or OFF file")
       ->required()
       ->type_name("FILE");
   app.add_option("-o,--output", import.scene, "scene file to write, .json")->required()->type_name("FILE");
-  app.add_option(
-         "--material", import.material,
-         "MaterialX file (.mtlx) that replaces the asset's materials; NAME selects one of several surfaces")
+  app.add_option("--material", import.material,
+                 "MaterialX file (.mtlx) that replaces the asset's materials of the same names, or all by "
+                 "the surface or "
+                 "material NAME")
       ->type_name("FILE[#NAME]");
   app.add_option("--animation", import.animation,
                  "animation of a glTF file that moves the scene, by its name or number (default: the first)")
       ->type_name("NAME");
+  add_asset_options(app, options);
   add_allow_outside(app);
   app.add_flag("--overwrite", import.overwrite, "replace an existing scene file with different content");
   app.add_flag("--quiet", import.log.quiet, "print errors and the parts that are not imported only");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <vector>
@@ -313,6 +314,14 @@ bool is_fitted(const Document& document) {
          });
 }
 
+bool sets_size_or_samples(std::span<const std::string> overrides) {
+  return std::ranges::any_of(overrides, [](const std::string& text) {
+    const std::string key = text.substr(0, text.find('='));
+    return key == "mm_per_unit" || key == "settings.samples" || key == "settings.sample_spacing" ||
+           key.ends_with(".fit_size");
+  });
+}
+
 /// Sphere around all shapes, in scene units.
 void enclose_shapes(const Scene& scene, AssetDefaults& defaults) {
   const World world = make_world(scene);
@@ -389,16 +398,20 @@ Scene load_scene(const std::string& path, std::span<const std::string> overrides
 std::vector<std::string> placed_defaults(const ImportedAsset& asset, const std::string& path,
                                          std::span<const std::string> overrides) {
   AssetDefaults defaults = asset.defaults;
-  if (!defaults.camera && !defaults.lights) return {};
+  std::vector<std::string> texts;
+  if (defaults.opaque && !sets_size_or_samples(overrides))
+    texts.push_back(fmt::format("settings.max_samples={}", kMostUnsizedSamples));
+  if (!defaults.camera && !defaults.lights) return texts;
   constexpr int kFirstFrame = std::numeric_limits<int>::min();
   Document before = merged_document(asset.text, path, {}, kFirstFrame),
            now = merged_document(asset.text, path, overrides, kFirstFrame);
-  if (now.root.kind != Node::Kind::object) return {};
+  if (now.root.kind != Node::Kind::object) return texts;
   resolve_keyed_values(now);
   std::optional<Vec3d> camera = camera_position(now);
   if (defaults.camera && camera == camera_position(before)) camera.reset();
   if (is_fitted(now)) enclose_shapes(parse_scene(asset.text, path, overrides), defaults);
-  return placement(defaults, camera);
+  std::ranges::move(placement(defaults, camera), std::back_inserter(texts));
+  return texts;
 }
 
 std::string read_scene_text(const std::string& path) {

@@ -13,7 +13,8 @@
 namespace opaline {
 
 /// Overrides, to precede the given ones, placing an asset's default camera around shapes with a fit_size, and
-/// its default lights for the camera in use, at its first key. Empty: it has its own camera and lights.
+/// its default lights for the camera in use, at its first key; and limiting the samples of an opaque asset, made
+/// translucent without a size, to kMostUnsizedSamples.
 /// in    path: of the asset
 /// error as merged_scene; as parse_scene and make_mesh if a shape has a fit_size
 std::vector<std::string> placed_defaults(const ImportedAsset& asset, const std::string& path,

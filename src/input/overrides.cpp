@@ -277,6 +277,20 @@ void drop_replaced_lens(Node& camera) {
   }
 }
 
+bool has_environment(const Node& scene) {
+  const Node* const lights = find_member(scene, "lights");
+  return lights != nullptr && std::ranges::any_of(lights->children, [](const Node& light) {
+           const Node* const type = find_member(light, "type");
+           return type != nullptr && type->text == "environment";
+         });
+}
+
+/// Removes the backdrop of a file: it would hide an environment added by an override.
+void drop_backdrop(Node& scene) {
+  std::erase_if(scene.children,
+                [](const Node& child) { return child.key == "backdrop" && child.override_index < 0; });
+}
+
 }  // namespace
 
 std::vector<std::string> environment_overrides(const std::string& picture) {
@@ -301,11 +315,13 @@ std::span<const std::string_view> replaced_surface_keys(std::string_view key) {
 
 void apply_overrides(Document& document) {
   const std::set<std::string> names = media_names(document.root);
+  const bool had_environment = has_environment(document.root);
   for (std::size_t i = 0; i < document.overrides.size(); ++i) {
     Override(document, static_cast<int>(i)).apply();
     replace_deprecated_spellings(document);
   }
   check_new_media(document, names);
+  if (!had_environment && has_environment(document.root)) drop_backdrop(document.root);
   for (Node& member : document.root.children)
     if (member.key == "shapes")
       for (Node& shape : member.children) drop_replaced_surface(document, shape);

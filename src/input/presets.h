@@ -16,6 +16,9 @@ struct Preset {
   double roughness = 0;  ///< specular_roughness without this key
 };
 
+/// specular_roughness of a measured preset chosen for an object by its name alone: by --medium, or on the page.
+inline constexpr double kMeasuredRoughness = 0.3;
+
 /// The twelve materials of Jensen et al. 2001, A Practical Model for Subsurface Light Transport, figure 5.
 std::span<const Preset> measured_presets();
 /// These, and then the looks: diffuse reflectance and mean free path by eye, for objects of some centimetres.

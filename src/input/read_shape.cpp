@@ -82,6 +82,16 @@ ShapeSource read_source(const ObjectReader& shape, const ShapeContext& context, 
   return read_torus(source, mm_per_unit);
 }
 
+/// The option for a preset in place of the value of an override, "--set shapes.SHAPE.medium=NAME".
+std::string medium_option(const Value& value, const std::string& preset) {
+  const std::string given = value.place().file, shapes = "shapes.", medium = ".medium=";
+  const std::size_t begin = given.find(shapes), end = given.rfind(medium);
+  std::string shape;
+  if (begin < end && end != given.npos)
+    shape = given.substr(begin + shapes.size(), end - begin - shapes.size());
+  return "--medium " + (shape.empty() || shape == "*" ? preset : shape + '=' + preset);
+}
+
 /// Fails with advice if a missing medium has the name of a preset, or a similar one.
 void fail_if_preset(const Value& value, const std::string& name) {
   std::vector<std::string_view> names;
@@ -94,8 +104,7 @@ void fail_if_preset(const Value& value, const std::string& name) {
   if (found == names.end()) return;
   const std::string preset(*found),
       text = "is not a medium of this scene" + (is_exact ? "" : hint_at(*found));
-  if (value.node().override_index >= 0)
-    value.fail(text + ": there is no '" + preset + "' yet; add --set media." + preset + ".preset=" + preset);
+  if (value.node().override_index >= 0) value.fail(text + ": use " + medium_option(value, preset));
   value.fail(text + ": '" + preset + "' is a preset: write \"media\": {\"" + preset + "\": {\"preset\": \"" +
              preset + "\"}}");
 }

@@ -18,6 +18,7 @@ namespace opaline {
 namespace {
 
 constexpr std::array<std::string_view, 3> kKinds{"diffuse", "specular", "emission"};
+constexpr const char* kBackdrop = "backdrop";
 // Relative rounding error of a sum of floats.
 constexpr float kRounding = 1e-6f;
 
@@ -126,6 +127,7 @@ Scene lit_by(Scene scene, const LightGroup& group) {
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     if (std::ranges::find(group.lights, l) == group.lights.end())
       scene.lights[l] = with_emission(scene.lights[l], {});
+  if (scene.backdrop && group.layer != kBackdrop) scene.backdrop = Rgb{};
   return scene;
 }
 
@@ -137,8 +139,6 @@ std::vector<LightGroup> light_groups(const Scene& scene) {
     throw refused({scene.file}, "noise differs between lights with this method",
                   "--method hierarchical, lambert or volume_diffusion", std::string(name_of(method)));
   if (scene.lights.empty()) throw refused({scene.file}, "the scene has no lights", "a light");
-  if (scene.backdrop && *scene.backdrop != Rgb{})
-    throw refused({scene.file}, "the backdrop belongs to no light", "no backdrop; composite it by alpha");
   for (const Shape& shape : scene.shapes)
     if (shape.catches_shadows)
       throw refused(shape.place, "a shadow catcher shows the shadows of all lights together",
@@ -155,6 +155,12 @@ std::vector<LightGroup> light_groups(const Scene& scene) {
                     '"' + scene.lights[group.lights[0]].name + "\" and \"" + light.name + '"');
     group.lights.push_back(l);
     group.is_seen = group.is_seen || !is_delta(light);
+  }
+  if (scene.backdrop && *scene.backdrop != Rgb{}) {
+    if (std::ranges::find(groups, kBackdrop, &LightGroup::layer) != groups.end())
+      throw refused({scene.file}, "a light and the backdrop have the same layer",
+                    "another name of the light");
+    groups.push_back({kBackdrop, {}, true});
   }
   return groups;
 }

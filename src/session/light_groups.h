@@ -9,7 +9,7 @@
 
 namespace opaline {
 
-/// A light of the scene, with the channels of one environment combined.
+/// A light of the scene, with the channels of one environment combined; or the backdrop, last, without lights.
 struct LightGroup {
   std::string layer;  ///< name of the light, with "_" for characters invalid in compositors
   std::vector<std::size_t> lights;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "assets/import_asset.h"
 #include "bodies/local_media.h"
 #include "bodies/plan_texts.h"
 #include "core/units.h"
@@ -90,10 +91,13 @@ void choose_samples(const Scene& scene, double fewest, BodyPlan& group, std::vec
   }
   if (count > double(settings.max_samples)) {
     const std::string required = count > 1e12 ? "more than a trillion" : fmt::format("{:.3g}", count);
+    const bool is_asset = is_asset_name(scene.file);
     warnings.push_back(
-        fmt::format("{}: requires {} samples ({}) but uses {} (settings.max_samples); check mm_per_unit: "
+        fmt::format("{}: requires {} samples ({}) but uses {} (settings.max_samples{}); check mm_per_unit{}: "
                     "the area is {:.4g} mm^2, the mean free path {:.4g} mm",
-                    group.name, required, group.reason, settings.max_samples, group.area, mean_free_path));
+                    group.name, required, group.reason, settings.max_samples,
+                    is_asset && settings.max_samples == kMostUnsizedSamples ? ", fewer without a size" : "",
+                    is_asset ? ", or give a size such as --size 50mm" : "", group.area, mean_free_path));
     count = double(settings.max_samples);
     group.reason = "settings.max_samples";
   }

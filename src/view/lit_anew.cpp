@@ -72,10 +72,12 @@ std::vector<std::optional<std::size_t>> lit_channels(const std::vector<std::stri
 
 std::optional<LitAnew> lit_anew(const Image& picture, const Scene& before, const Scene& now) {
   if (!differ_in_emission_alone(before, now)) return {};
-  const bool has_backdrop = now.backdrop && *now.backdrop != Rgb{};
-  if (has_backdrop || std::ranges::any_of(now.shapes, &Shape::catches_shadows)) return {};
+  if (std::ranges::any_of(now.shapes, &Shape::catches_shadows)) return {};
   const std::optional<ChannelFactors> of_channels = common_factors(before, now);
   if (!of_channels) return {};
+  const bool has_backdrop = now.backdrop && *now.backdrop != Rgb{};
+  if (has_backdrop && std::ranges::any_of(*of_channels, [](const auto& f) { return f && *f != 1; }))
+    return {};
   Image lit = picture;
   const std::vector<std::optional<std::size_t>> channels = lit_channels(lit.channels);
   const std::size_t count = channels.size();

@@ -50,12 +50,15 @@ Json preset_json(std::string_view name, bool is_measured) {
   const Medium medium = parse_medium(fmt::format("{{\"preset\": \"{}\"}}", name), "preset");
   const auto& physical = std::get<PhysicalMedium>(medium.coefficients);
   const auto triple = [](const Rgb& c) { return Json{c.x, c.y, c.z}; };
+  Json chosen{{"preset", name}};  // the medium that the page adds
+  if (is_measured) chosen["specular_roughness"] = kMeasuredRoughness;
   return {{"name", name},
           {"sigma_a", triple(physical.sigma_a)},
           {"sigma_s_prime", triple(physical.sigma_s_prime)},
           {"specular_ior", medium.eta},
           {"specular_roughness", medium.specular_roughness},
-          {"is_measured", is_measured}};
+          {"is_measured", is_measured},
+          {"chosen", std::move(chosen)}};
 }
 
 Json group_json(const Scene& scene, const BodyPlan& group) {

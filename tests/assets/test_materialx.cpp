@@ -115,6 +115,49 @@ TEST(MaterialX, StandardSurfaceIsFoundByName) {
   }
 }
 
+// Claim: the first of several surfaces is taken with a warning that names the others, a surface given by name without. Fails if:
+// a look is chosen in silence.
+TEST(MaterialX, TheFirstOfSeveralIsNamed) {
+  const MaterialFolder folder;
+  EXPECT_TRUE(
+      has(folder.import("tetrahedron.obj").warnings,
+          "a.mtlx: 'SR_skin' is the material of all shapes; others of the file, by FILE#NAME: 'SR_wax', "
+          "'SR_paint'"));
+  EXPECT_FALSE(has(folder.import("tetrahedron.obj", "#wax").warnings, "SR_"));
+}
+
+constexpr const char* kTwoMaterials = R"(<materialx>
+  <image name="skin" type="color3"><input name="file" type="filename" value="skin.png" colorspace="srgb_texture"/></image>
+  <tiledimage name="dull" type="float"><input name="file" type="filename" value="dull.png"/></tiledimage>
+  <open_pbr_surface name="SR_a"><input name="base_color" type="color3" nodename="skin"/>
+    <input name="base_weight" value="0.5"/><input name="specular_roughness" type="float" nodename="dull"/></open_pbr_surface>
+  <standard_surface name="SR_b"><input name="subsurface" value="1"/>
+    <input name="subsurface_color" type="color3" nodename="skin"/></standard_surface>
+  <surfacematerial name="a"><input name="surfaceshader" nodename="SR_a"/></surfacematerial>
+  <surfacematerial name="b"><input name="surfaceshader" nodename="SR_b"/></surfacematerial></materialx>)";
+
+// Claim: each shape has the MaterialX material of the name of its own, one without such a name keeps its own; images are
+// textures. Fails if: all shapes have the first material, or an image is ignored.
+TEST(MaterialX, MaterialsByName) {
+  const MaterialFolder folder(kTwoMaterials);
+  put_bytes(folder.file("c.obj"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl b\nf 1 3 2\nusemtl a\nf 1 2 4\nf 2 3 4\n"
+            "usemtl c\nf 3 1 4\n");
+  const ImportedAsset import = folder.import("c.obj");
+  const Json json = Json::parse(import.text, nullptr, true, true);
+  const Json& shapes = json["shapes"];
+  const std::string skin = folder.file("skin.png");
+  EXPECT_EQ(shapes[0]["medium"], "b");
+  EXPECT_EQ(json["media"]["b"]["subsurface_color"]["texture"], skin);
+  EXPECT_EQ(shapes[1]["reflectance"], (Json{{"texture", skin}, {"color_space", "srgb"}, {"scale", .5}}));
+  EXPECT_EQ(shapes[1]["specular_roughness"]["texture"], folder.file("dull.png"));
+  EXPECT_FALSE(shapes[2].contains("medium") || shapes[2]["reflectance"].is_object());
+  EXPECT_TRUE(has(import.warnings, "has no material 'c': it stays as in the asset"));
+  EXPECT_FALSE(has(import.not_carried, "connect"));
+  const ImportedAsset one = folder.import("c.obj", "#a");
+  EXPECT_TRUE(Json::parse(one.text, nullptr, true, true)["shapes"][2]["reflectance"].is_object());
+}
+
 // Claim: without scattering below the surface it is opaque, of base times base colour, sRGB made linear, ACEScg made
 // Rec.709. Source: MaterialX's colour spaces; ACEScg white is Rec.709 white. Fails if colours are taken as they stand.
 TEST(MaterialX, OthersAreOpaque) {

@@ -126,7 +126,7 @@ TEST(CliInputs, FilesLookAsTheyMust) {
   const std::string inputs = std::string(OPALINE_TEST_INPUTS) + "/";
   const SceneFolder folder;
   EXPECT_NEAR(mean_of(folder, {inputs + "hole_ok.json", "--method", "hierarchical"})[0], .1848, .0018);
-  const auto red = mean_of(folder, {inputs + "bom.obj", "--resolution", "64x64"});
+  const auto red = mean_of(folder, {inputs + "bom.obj", "--resolution", "64x64", "--set", "backdrop=0"});
   EXPECT_GT(red[0], 3 * red[1]);
   const std::vector<std::string> turned{inputs + "torus.json", "--set",
                                         "shapes.0.transform.0.rotate.degrees=33.75"};

@@ -99,6 +99,26 @@ TEST(LightGroups, SumToThePicture) {
   }
 }
 
+// Claim: the backdrop is a layer of its own, the only one where no shape is seen. Source: light_groups.h. Fails if: it is in the
+// layer of a light, too, or in none.
+TEST(LightGroups, BackdropIsALayer) {
+  Scene scene = lit_balls();
+  scene.backdrop = Rgb{.1, .2, .4};
+  const Grouped grouped(scene);
+  expect_sum(scene, grouped.picture);
+  EXPECT_EQ(light_groups(scene).back().layer, "backdrop");
+  int seen = 0;
+  for (int x = 0; x < grouped.picture.width; ++x)
+    if (channel(grouped.picture, x, 0, "A") == 0) {
+      EXPECT_EQ(channel(grouped.picture, x, 0, "emission_backdrop.B"), .4f);
+      EXPECT_EQ(channel(grouped.picture, x, 0, "emission_surroundings.B"), 0);
+      ++seen;
+    }
+  EXPECT_GT(seen, 0);
+  scene.lights[0].name = "backdrop";
+  EXPECT_THROW(light_groups(scene), Error);
+}
+
 // Claim: light that bounces is in the group of the light that it comes from, with all methods that have groups. Fails if groups are rendered without bounces, or bounced light is kept from the light
 // before.
 TEST(LightGroups, BouncedLightAndOtherMethods) {

@@ -72,8 +72,8 @@ TEST(LitAnew, IsWhatIsRendered) {
   }
 }
 
-// Claim: it is not known where lights differ by different factors or in more than what they emit, or anything else does; nor
-// beside a backdrop, which is no light, or a shadow catcher, whose alpha depends on all lights.
+// Claim: it is not known where lights differ by different factors or in more than what they emit, or anything else does; nor,
+// unless the exposure alone differs, beside a backdrop, which is no light, or a shadow catcher, whose alpha depends on all lights.
 TEST(LitAnew, IsOfLightAlone) {
   const ViewFolder folder;
   const Scene scene = load_scene(folder.scene);
@@ -86,6 +86,9 @@ TEST(LitAnew, IsOfLightAlone) {
        {load_scene(folder.scene, std::vector<std::string>{"backdrop=0.5"}),
         load_scene(folder.scene, std::vector<std::string>{"shapes.floor.shadow_catcher=true"})})
     EXPECT_FALSE(lit_anew(picture, beside, in_light(beside, Rgb(2))));
+  Scene exposed = load_scene(folder.scene, std::vector<std::string>{"backdrop=0.5"}), before = exposed;
+  exposed.film.exposure = 1;
+  EXPECT_TRUE(lit_anew(picture, before, exposed));
   const Scene dark = in_light(scene, {});
   EXPECT_FALSE(lit_anew(picture, dark, scene));
   EXPECT_TRUE(lit_anew(picture, scene, dark));

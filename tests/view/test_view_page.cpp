@@ -142,7 +142,8 @@ TEST_F(LongViewPage, ShapesChangeTheirMaterial) {
   };
   std::vector<std::string> edits = choose("skin1");
   EXPECT_EQ(edits.back(), "shapes.left.medium=\"skin1\"");
-  expect_shown(rendered(folder.scene, {"media.skin1.preset=skin1", "shapes.left.medium=skin1"}));
+  expect_shown(rendered(folder.scene, {R"(media.skin1={"preset": "skin1", "specular_roughness": 0.3})",
+                                       "shapes.left.medium=skin1"}));
   browser.run(tab, "document.querySelector('[aria-label=\"shapes.left.medium jade\"]').click()");
   EXPECT_EQ(final_edits(revision + 1).back(), "shapes.left.medium=\"jade\"");
   expect_shown(rendered(folder.scene, {"media.jade.preset=jade", "shapes.left.medium=jade"}));

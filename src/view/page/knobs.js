@@ -192,7 +192,7 @@ export class Knobs {
   materialRow(i) {
     const media = Object.keys(this.scene.media || {}), path = `${this.pathOf("shapes", i)}.medium`;
     const choose = (name) => {
-      const added = name && !media.includes(name) ? {[`media.${name}`]: {preset: name}} : {};
+      const added = name && !media.includes(name) ? {[`media.${name}`]: this.presets.get(name).chosen} : {};
       this.set(name ? {...added, [path]: name} : {[path.replace(/medium$/, "reflectance")]: .5}, newStroke());
     };
     const group = (label, names) => names.length ? [make("optgroup", {label}, ...names.map((name) => make("option", {textContent: name})))] : [];

@@ -12,6 +12,9 @@ SAMPLES_PER_PIXEL = 4
 APERTURE_UNIT = 0.1  # stage units; of apertures and focal lengths
 FIELD_OF_VIEW, MARGIN = 30, 1.05  # of the default camera: degrees, and radius of the visible sphere over the scene's
 
+AZIMUTH, ELEVATION = math.radians(35), math.radians(20)
+DEFAULT_VIEW = np.array([math.sin(AZIMUTH) * math.cos(ELEVATION), math.sin(ELEVATION), math.cos(AZIMUTH) * math.cos(ELEVATION)])
+
 
 def render_settings(stage):
     """The render settings of a stage, or None."""
@@ -58,14 +61,16 @@ def camera_keys(prim, matrix, settings, time):
 
 def default_camera(shapes):
     """A three-quarter view of all shapes."""
+    center, radius = ball_around(shapes)
+    position = center + DEFAULT_VIEW * (MARGIN * radius / math.sin(math.radians(FIELD_OF_VIEW) / 2))
+    return {"position": position.tolist(), "look_at": center.tolist(), "field_of_view": FIELD_OF_VIEW}
+
+
+def ball_around(shapes):
+    """Center and radius of a ball around all vertices, the center that of their box."""
     ends = np.concatenate([to_world(shape) for shape in shapes])
     center = (ends.min(axis=0) + ends.max(axis=0)) / 2
-    radius = max(float(np.linalg.norm(ends - center, axis=1).max()), 1e-12)
-    azimuth, elevation = math.radians(35), math.radians(20)
-    towards = np.array([math.sin(azimuth) * math.cos(elevation), math.sin(elevation),
-                        math.cos(azimuth) * math.cos(elevation)])
-    position = center + towards * (MARGIN * radius / math.sin(math.radians(FIELD_OF_VIEW) / 2))
-    return {"position": position.tolist(), "look_at": center.tolist(), "field_of_view": FIELD_OF_VIEW}
+    return center, max(float(np.linalg.norm(ends - center, axis=1).max()), 1e-12)
 
 
 def to_world(shape):

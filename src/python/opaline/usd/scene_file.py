@@ -6,6 +6,7 @@ import json
 import os
 
 from .camera import default_camera
+from .default_lights import default_lights
 from .glb import mesh_file
 from .records import Picture
 from .report import UsdError
@@ -28,13 +29,13 @@ class SceneFile:
         mesh_name = f"{self.stem}.meshes.glb"
         self.files[mesh_name] = mesh_file(meshes)
         shapes = [keys for shape in self.scene.shapes for keys in self.shapes_of(shape, mesh_name, numbers[id(shape.mesh)])]
-        keys = {"mm_per_unit": self.scene.mm_per_unit,
-                "camera": self.scene.camera or default_camera(self.scene.shapes), "film": self.scene.film,
+        camera = self.scene.camera or default_camera(self.scene.shapes)
+        keys = {"mm_per_unit": self.scene.mm_per_unit, "camera": camera, "film": self.scene.film,
                 "media": self.media, "shapes": shapes, "lights": [self.light(light) for light in self.scene.lights]}
         if self.scene.surroundings is not None:
             keys["surroundings"] = self.scene.surroundings
         elif not self.scene.lights:
-            keys["surroundings"] = 1
+            keys |= default_lights(self.scene.shapes, camera)
         return json.dumps(keys, indent=1)
 
     def shapes_of(self, shape, mesh_name, number):
