@@ -29,6 +29,7 @@ constexpr double kKnob = .06;                       // s: an image after turning
 constexpr double kPatience = .5;                    // s: maximum wait for running interactive work
 constexpr double kLongFinal = .25;                  // s: longer final images get sharper ones before
 constexpr double kDearer = 2;  // a change is not as quick as the last one with this ratio of expected times
+constexpr double kSlow = .1;   // s: least expected time of such a change
 constexpr int kCoarsest = 16;
 
 std::unique_ptr<Session> new_session() {
@@ -207,7 +208,7 @@ void ViewRenderer::draw(const Wanted& wanted) {
   Spent& spent = spent_[change];
   const bool is_direct = wanted.scene.settings.method == Method::direct;
   const double expected = expected_seconds(session_->scene(), session_->plan());
-  if (expected > kDearer * spent.expected) spent = {};
+  if (expected > std::max(kSlow, kDearer * spent.expected)) spent = {};
   spent.expected = expected;
   const bool is_quick = spent.prepare < kFrame && !is_direct;
   const Stopwatch watch;
@@ -223,12 +224,11 @@ void ViewRenderer::draw(const Wanted& wanted) {
   if (lit != nullptr && lit->step == PictureStep::final)
     return report(wanted, lit->image, estimated_relative_error(lit->image, lit->translucent),
                   std::move(relighting));
-  draft_ = lit;
   if (lit != nullptr) return draw_final(wanted, spent, &monitor_);
   if (is_quick && spent.final < (change == camera ? kFrame : kKnob))
     return draw_final(wanted, spent, &brief_);
   const int stride = draft_stride(wanted.scene.film);
-  draft_ = draw_draft(wanted, stride, PictureStep::moving, &brief_);
+  draw_draft(wanted, stride, PictureStep::moving, &brief_);
   refine(wanted, spent, stride);
 }
 
