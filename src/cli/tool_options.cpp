@@ -13,9 +13,9 @@ void add_import_options(CLI::App& app, ImportArguments& import, Options& options
       ->type_name("FILE");
   app.add_option("-o,--output", import.scene, "scene file to write, .json")->required()->type_name("FILE");
   app.add_option("--material", import.material,
-                 "MaterialX file (.mtlx) that replaces the asset's materials of the same names, or all by "
-                 "the surface or "
-                 "material NAME")
+                 "MaterialX file (.mtlx) that replaces the asset's materials of the same names; NAME: all of "
+                 "them, by "
+                 "this surface or material")
       ->type_name("FILE[#NAME]");
   app.add_option("--animation", import.animation,
                  "animation of a glTF file that moves the scene, by its name or number (default: the first)")

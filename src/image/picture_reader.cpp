@@ -52,7 +52,7 @@ void linearize(Image& image, int alpha) {
 }  // namespace
 
 Image read_picture(const std::string& path) {
-  constexpr std::string_view formats[] = {"exr", "hdr", "png"};  // EXR: see read_exr.h
+  constexpr std::string_view formats[] = {"exr", "hdr", "png"};  // those of read_image; read_exr.h reads EXRs
   const PictureSource source{path, {}};
   check_is_whole(source);
   const OpenPicture picture = open_picture(source, formats);

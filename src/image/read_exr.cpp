@@ -12,8 +12,12 @@
 #include <OpenEXR/ImfThreading.h>
 
 #include <algorithm>
+#include <array>
 #include <new>
+#include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "image/color_channels.h"
 #include "image/exr_chunks.h"

@@ -2,14 +2,12 @@
 #include "image/texel_colors.h"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
-#include <utility>
 
 #include "core/srgb.h"
 #include "opaline/error.h"
 
 namespace opaline {
+
 std::optional<ColorMatrix> matrix_to_rec709(const OIIO::ImageSpec& file, const std::string& path) {
   float stated[8];
   if (!file.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), stated)) return {};

@@ -28,8 +28,8 @@ constexpr double kFrame = 1.0 / 30, kDraft = .022;  // s: an interactive image, 
 constexpr double kKnob = .06;                       // s: an image after turning a knob
 constexpr double kPatience = .5;                    // s: maximum wait for running interactive work
 constexpr double kLongFinal = .25;                  // s: longer final images get sharper ones before
-constexpr double kDearer = 2;  // a change is not as quick as the last one with this ratio of expected times
-constexpr double kSlow = .1;   // s: least expected time of such a change
+// A change with more than this ratio to the last one's expected time, and this time, needs other stages.
+constexpr double kDearer = 2, kSlow = .1;  // s
 constexpr int kCoarsest = 16;
 
 std::unique_ptr<Session> new_session() {

@@ -171,6 +171,47 @@ TEST_F(LongViewTools, Snapshots) {
   EXPECT_EQ(browser.run(tab, "document.querySelector('#snapshots b').textContent"), "4");
 }
 
+// Claim: the size of a shape in mm scales the scene; a link holds the edits and the camera. By hand: a ball of 20 units at 40 mm
+// has 2 mm a unit. Fails if the size of another shape counts, or if the link loses the camera.
+TEST_F(LongViewTools, SizeAndLink) {
+  type("shapes.1.size", "size", "40");
+  std::vector<std::string> edits = final_edits(revision + 1);
+  ASSERT_EQ(edits.size(), 1u);
+  EXPECT_NEAR(load_scene(folder.scene, edits).mm_per_unit, 2, .01);
+  browser.drag(tab, middle("#picture")[0], middle("#picture")[1], 60, -25);
+  final_edits(revision + 1);
+  const Camera linked = camera_now();
+  click("link");
+  const std::string told = "document.getElementById('told').textContent";
+  ASSERT_TRUE(browser.comes_true(tab, told + ".includes('#')"));
+  const std::string link = browser.run(tab, told + ".replace(/.*http/, 'http')").get<std::string>();
+  click("reset");
+  click("look-back");
+  EXPECT_TRUE(final_edits(revision + 2).empty());
+  browser.run(tab, "location.href = '" + link + "'; location.reload()");
+  ASSERT_TRUE(browser.comes_true(tab, "document.getElementById('whose-camera')?.textContent === 'free'"));
+  EXPECT_EQ(final_edits(revision + 1), edits);
+  EXPECT_EQ(camera_now(), linked);
+}
+
+// Claim: the channel `error` is in false colours beside their legend: without an error the first of them, the background
+// black. Fails if the error is shown as light.
+TEST_F(LongViewTools, ErrorsInFalseColours) {
+  browser.run(tab,
+              "(() => { const field = document.getElementById('channel'); field.value = 'error'; "
+              "field.onchange(); })()");
+  EXPECT_EQ(browser.run(tab, "document.getElementById('legend').textContent.startsWith('0.1 %')"), true);
+  const std::string pixels =
+      "(() => { const picture = document.getElementById('picture'), counts = {}; "
+      "const bytes = picture.getContext('2d').getImageData(0, 0, picture.width, picture.height).data; "
+      "for (let i = 0; i < bytes.length; i += 4) { const key = bytes.slice(i, i + 3).join(); "
+      "counts[key] = (counts[key] || 0) + 1; } return counts; })()";
+  ASSERT_TRUE(browser.comes_true(tab, pixels + "['13,20,90'] > 0"));
+  const Json counts = browser.run(tab, pixels);
+  EXPECT_GT(counts.value("0,0,0", 0), 20);
+  EXPECT_GT(counts.size(), 20u);
+}
+
 // Claim: Shift and a digit store the free camera, the digit shows it again, also after the page was loaded anew. Fails if the scene's
 // camera is stored, or if views are lost with the page.
 TEST_F(LongViewTools, StoredViews) {

@@ -77,6 +77,28 @@ TEST(ViewServer, SavesWhatItShows) {
   EXPECT_EQ(bytes_of(folder.file("out.exr")), "a picture");
 }
 
+// Claim: a page ends the rendering of a file, of which no part is left, and may ask for another. Fails if the request is not
+// heard while a file is rendered, or ends the next one.
+TEST(ViewServer, AFileIsCancelled) {
+  const ViewFolder folder;
+  const RunningView view(folder.scene);
+  ViewClient page(view);
+  ASSERT_TRUE(page.read_final());
+  const auto shows_progress = [&] {
+    return page.texts.contains("file") && page.texts.at("file").at("stage") != "";
+  };
+  page.send({{"do", "render"}, {"name", "endless.exr"}});
+  EXPECT_NE(page.read_answer().find("rendering"), std::string::npos);
+  ASSERT_TRUE(page.read_until(shows_progress));
+  page.send({{"do", "cancel_render"}});
+  EXPECT_NE(page.read_answer().find("endless.exr: interrupted"), std::string::npos);
+  EXPECT_EQ(folder.entries(), 1u);
+  ASSERT_TRUE(page.read_until([&] { return !shows_progress(); }));
+  page.send({{"do", "render"}, {"name", "out.exr"}});
+  EXPECT_NE(page.read_answer().find("rendering"), std::string::npos);
+  EXPECT_NE(page.read_answer().find("rendered"), std::string::npos);
+}
+
 // Claim: all pages see the same; what one asks for in vain the other does not hear; when one leaves, the other stays.
 TEST(ViewServer, PagesSeeTheSame) {
   const ViewFolder folder;

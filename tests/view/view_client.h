@@ -101,7 +101,14 @@ class RunningView {
               return "render with " + std::to_string(overrides.size());
             },
             [](const std::string&, const std::vector<std::string>&, std::optional<int>,
-               const std::string& path, Monitor&) { put_bytes(path, "a picture"); }};
+               const std::string& path, Monitor& monitor) {
+              const bool is_endless = path.find("endless") != path.npos;
+              while (is_endless) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+                advance(&monitor, 1);
+              }
+              put_bytes(path, "a picture");
+            }};
   }
 
   std::mutex mutex_;

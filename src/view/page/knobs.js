@@ -246,7 +246,7 @@ export class Knobs {
     const range = kNumbers.concat(kColours).includes(row.type) && Math.abs(row.range[1]) < 1e29 ? `, ${row.range[0]} to ${row.range[1]}` : "";
     const unit = row.unit || (["length", "point"].includes(row.type) ? "scene units" : "");
     const help = `${row.key}: ${plain(row.meaning)}${unit ? ` [${unit}]` : ""}${range}${row.default ? `; default ${plain(row.default)}` : ""}`;
-    knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name", textContent: row.label || row.key.replaceAll("_", " ")}), inputs);
+    knob.root = make("div", {className: "knob", title: help}, make("span", {className: "name", textContent: row.key.replaceAll("_", " ")}), inputs);
     knob.root.role = "group";
     knob.root.setAttribute("aria-label", `${path}, ${unit}`);
     if (row.unit && row.unit.length < 14) inputs.append(make("span", {className: "unit", textContent: row.unit}));

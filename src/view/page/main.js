@@ -17,7 +17,8 @@ const one = (id) => document.getElementById(id);
 const kLooksOpaque = 300;  // mean free paths through a body
 const kLooksClear = 1;     // mean free paths
 const kNoticed = 400;      // ms
-const kRadiansASecond = .25, kTurnStep = 33;  // ms
+const kRadiansASecond = .25;
+const kTurnStep = 33;      // ms
 
 const film = {aspect: 1, shownHeight: 1, place: (seen) => seen};
 const state = {scene: null, camera: null, film, wipe: 0, revision: 0, edits: [], command: "", boxes: [], selected: null};
@@ -326,9 +327,9 @@ function sizeWarnings(groups) {
 const list = (texts) => texts.map((text) => make("li", {textContent: text}));
 const paragraph = (text) => Object.assign(document.createElement("p"), {textContent: text});
 let plan = {groups: [], stages: [], warnings: [], memory: ""}, report = null, overdue = 0;
-let filing = null;  // image at the start of the rendering of a file
+let filing = null;  // the image shown when the rendering of a file began
 
-// Names the image of an earlier scene, once the new one's takes a while.
+// An image of an earlier scene is named as such, once a new one takes a while.
 function noteWait() {
   clearTimeout(overdue);
   overdue = setTimeout(() => {
@@ -380,7 +381,8 @@ const takes = {
   },
   file: ({stage, done, total}) => {
     const isRendering = stage !== "";
-    if (isRendering && !filing) filing = {frame, isAsSeen: !state.scene.look && frame?.step === "final" && frame.revision === state.revision};
+    if (!isRendering) filing = null;
+    else if (!filing) filing = {frame, isAsSeen: !state.scene.look && frame?.step === "final" && frame.revision === state.revision};
     one("cancel").hidden = !isRendering;
     one("cancel").textContent = `Cancel: ${stage}${total ? ` ${Math.min(100, Math.floor(100 * done / total))} %` : ""}`;
     one("render").disabled = one("render-png").disabled = isRendering;
@@ -413,7 +415,6 @@ const takes = {
   // A refused edit is dropped: the scene message follows.
   told: (message) => {
     if (filing && message.text.startsWith("rendered ") && filing.isAsSeen && filing.frame === frame) takeSnapshot();
-    if (/^rendered |: interrupted$/.test(message.text)) filing = null;
     if (!message.good) ahead.clear();
     tell(message.text, message.good);
   },
