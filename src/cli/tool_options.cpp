@@ -12,10 +12,10 @@ void add_import_options(CLI::App& app, ImportArguments& import, Options& options
       ->required()
       ->type_name("FILE");
   app.add_option("-o,--output", import.scene, "scene file to write, .json")->required()->type_name("FILE");
-  app.add_option("--material", import.material,
-                 "MaterialX file (.mtlx) that replaces the asset's materials of the same names; NAME: all of "
-                 "them, by "
-                 "this surface or material")
+  app.add_option(
+         "--material", import.material,
+         "MaterialX file (.mtlx): its materials replace those of the same names; with NAME, this surface or "
+         "material replaces all")
       ->type_name("FILE[#NAME]");
   app.add_option("--animation", import.animation,
                  "animation of a glTF file that moves the scene, by its name or number (default: the first)")
