@@ -22,6 +22,16 @@ Depths depths_of(double depth, double width, CubeCentre centre) {
 
 }  // namespace
 
+std::array<ReducedMedium, 3> reduced_media(const PhysicalMedium& medium, double eta, double unit) {
+  std::array<ReducedMedium, 3> media;
+  for (std::size_t c = 0; c < 3; ++c) {
+    constexpr double kEmpty = 1e-12;  // 1/mm
+    const double extinction = std::max(kEmpty, medium.sigma_a[c] + medium.sigma_s_prime[c]);
+    media[c] = {1 / (extinction * unit), std::min(1., medium.sigma_a[c] / extinction), eta};
+  }
+  return media;
+}
+
 LayeredMedia::LayeredMedia(const Scene& scene, const World& world, const Medium& medium, CubeCentre centre)
     : world_(world), medium_(medium), centre_(centre), textures_(scene, world) {}
 
@@ -50,13 +60,7 @@ std::array<ReducedMedium, 3> LayeredMedia::at(const Vec3d& position, const Neare
     sigma_s_prime += layer.coefficients.sigma_s_prime * share;
     top = bottom;
   }
-  std::array<ReducedMedium, 3> media;
-  for (std::size_t c = 0; c < 3; ++c) {
-    constexpr double kEmpty = 1e-12;  // 1/mm
-    const double extinction = std::max(kEmpty, sigma_a[c] + sigma_s_prime[c]);
-    media[c] = {1 / (extinction * world_.unit), std::min(1., sigma_a[c] / extinction), medium_.eta};
-  }
-  return media;
+  return reduced_media({sigma_a, sigma_s_prime}, medium_.eta, world_.unit);
 }
 
 }  // namespace opaline

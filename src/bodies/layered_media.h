@@ -14,6 +14,9 @@ namespace opaline {
 /// Centre of a cube cut by the surface: its own, or the centre of its part inside the body.
 enum class CubeCentre { own, inside };
 
+/// Media of R G B from coefficients in 1/mm, lengths in a unit of so many mm; empty ones scatter almost nothing.
+std::array<ReducedMedium, 3> reduced_media(const PhysicalMedium& medium, double eta, double unit);
+
 /// Layers of a medium below the surface of its bodies; R G B, reduced, lengths in the world's unit.
 class LayeredMedia {
  public:

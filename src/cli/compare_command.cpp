@@ -12,6 +12,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/report.h"
 #include "core/units.h"
 #include "image/error_picture.h"
 #include "opaline/compare.h"
@@ -44,10 +45,6 @@ struct CompareReport {
   std::vector<NonFiniteReport> not_finite;  ///< the image, then its references
   std::vector<std::string> failures;        ///< why the comparison failed
 };
-
-void print_row(const std::string& label, const std::string& text) {
-  write_line(stdout, fmt::format("{:<12}{}", label, text));
-}
 
 std::string percent(double share) {
   return fmt::format("{:.3g} %", 100 * share);

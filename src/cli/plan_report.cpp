@@ -25,11 +25,6 @@ namespace {
 constexpr double kLong = 5;             // seconds
 constexpr std::size_t kMostShown = 50;  // bodies
 
-/// Labels form a column.
-void print_row(const std::string& label, const std::string& text) {
-  write_line(stdout, fmt::format("{:<12}{}", label, text));
-}
-
 using Paragraphs = std::vector<std::string>;
 
 /// A row with a label begins a paragraph, one without continues it.
@@ -246,6 +241,10 @@ void warn_of_nothing_seen(const Log& log) {
 
 }  // namespace
 
+void print_row(const std::string& label, const std::string& text) {
+  write_line(stdout, fmt::format("{:<12}{}", label, text));
+}
+
 void print_plates(const Log& log, const std::vector<PlateModel>& plates) {
   if (log.quiet) return;
   for (const PlateModel& plate : plates)
@@ -257,15 +256,16 @@ void print_plates(const Log& log, const std::vector<PlateModel>& plates) {
 
 void warn_of_unused_media(const Log& log, std::span<const std::string> overrides, const Scene& scene) {
   std::vector<std::string_view> used;
-  for (const Shape& shape : scene.shapes)
-    if (shape.medium) used.push_back(scene.media[*shape.medium].name);
+  for (const Shape& shape : scene.shapes) {
+    if (!shape.medium) continue;
+    used.push_back(scene.media[*shape.medium].name);
+    for (const MediumLayer& layer : scene.media[*shape.medium].layers) used.push_back(layer.medium);
+  }
   for (std::size_t m = 0; m < scene.media.size(); ++m) {
     const std::string prefix = "media." + scene.media[m].name + ".";
     const bool is_set =
         std::ranges::any_of(overrides, [&](const std::string& text) { return text.starts_with(prefix); });
-    const bool is_used =
-        std::ranges::any_of(scene.shapes, [&](const Shape& shape) { return shape.medium == m; });
-    if (is_set && !is_used)
+    if (is_set && std::ranges::find(used, scene.media[m].name) == used.end())
       print_warning(log, fmt::format("no shape uses the medium '{0}' of --set {1}...{2}; assign it with "
                                      "--set shapes.NAME.medium={0}",
                                      scene.media[m].name, prefix, did_you_mean(scene.media[m].name, used)));

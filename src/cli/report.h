@@ -18,6 +18,9 @@
 
 namespace opaline {
 
+/// Prints a line whose label stands in a column of labels.
+void print_row(const std::string& label, const std::string& text);
+
 /// Warns of media changed by --set but used by no shape, most often misspelt.
 void warn_of_unused_media(const Log& log, std::span<const std::string> overrides, const Scene& scene);
 

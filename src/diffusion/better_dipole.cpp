@@ -5,15 +5,11 @@
 #include <numbers>
 
 #include "diffusion/find_radius.h"
+#include "diffusion/mean_decay.h"
 #include "transport/fresnel.h"
 
 namespace opaline {
 namespace {
-
-// (1 - e^-x) / x, 1 at 0.
-double mean_decay(double x) {
-  return x > 0 ? -std::expm1(-x) / x : 1;
-}
 
 // Integral of r' R_d 4 pi / alpha'^2 from r to infinity. The term z (1 + s d) e^-sd / d^3 gives z e^-sd / d,
 // and e^-sd / d gives e^-sd / s; the difference between the sources avoids 0/0. r in mean free paths.

@@ -15,6 +15,7 @@ namespace {
 // Along an emptier layer, light spreads about as far as the layer is thick.
 constexpr double kMostFreePath = 8;        // thicknesses
 constexpr double kLeastExtinction = 1e-9;  // over the largest
+constexpr double kLeastThickness = 1e-8;  // mean free paths of the densest layer; thinner ones have no effect
 
 /// One layer between the fluences at its two faces: phi = phi_top u + phi_bottom v + p, where u and v solve the
 /// equation without sources, with values 1 and 0 at the faces, and p vanishes there.
@@ -58,10 +59,18 @@ Between between(const FlatLayer& layer, double extinction, double wave_number, d
   return result;
 }
 
+double densest_of(std::span<const FlatLayer> layers) {
+  double densest = 0;
+  for (const FlatLayer& layer : layers)
+    if (layer.thickness > 0) densest = std::max(densest, layer.sigma_a + layer.sigma_s_prime);
+  return densest;
+}
+
 std::vector<FlatLayer> without_empty(std::span<const FlatLayer> layers) {
+  const double densest = densest_of(layers);
   std::vector<FlatLayer> kept;
   for (const FlatLayer& layer : layers)
-    if (layer.thickness > 0) kept.push_back(layer);
+    if (layer.thickness > 0 && !(layer.thickness * densest < kLeastThickness)) kept.push_back(layer);
   if (kept.empty()) kept.push_back({});
   return kept;
 }
@@ -71,8 +80,7 @@ std::vector<FlatLayer> without_empty(std::span<const FlatLayer> layers) {
 // Tridiagonal in the fluences at the faces: the flux D phi' is continuous, and at the outer faces phi = 2 A D |phi'|.
 double layered_exitance(std::span<const FlatLayer> all, double mismatch, double wave_number) {
   const std::vector<FlatLayer> layers = without_empty(all);
-  double densest = 0;
-  for (const FlatLayer& layer : layers) densest = std::max(densest, layer.sigma_a + layer.sigma_s_prime);
+  const double densest = densest_of(layers);
   if (!(densest > 0)) return 0;
   std::vector<double> diagonal(layers.size() + 1), upper(layers.size()), right(layers.size() + 1);
   diagonal[0] = 1 / (2 * mismatch);
@@ -106,13 +114,14 @@ std::vector<FlatLayer> flat_layers(const Medium& medium, std::size_t channel) {
   return layers;
 }
 
-ReducedMedium equivalent_medium(std::span<const FlatLayer> layers, double eta) {
+ReducedMedium equivalent_medium(std::span<const FlatLayer> all, double eta) {
+  const std::vector<FlatLayer> layers = without_empty(all);
   const double mismatch = boundary_mismatch(eta), total = layered_exitance(layers, mismatch, 0);
   double length = 0;                        // mean free path of the first layer with matter
   double shortest = INFINITY, longest = 0;  // any layer with matter
   for (const FlatLayer& layer : layers) {
     const double extinction = layer.sigma_a + layer.sigma_s_prime;
-    if (!(extinction > 0 && layer.thickness > 0)) continue;
+    if (!(extinction > 0)) continue;
     if (!(length > 0)) length = 1 / extinction;
     shortest = std::min(shortest, 1 / extinction), longest = std::max(longest, 1 / extinction);
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "diffusion/find_radius.h"
+#include "diffusion/mean_decay.h"
 #include "transport/fresnel.h"
 
 namespace opaline {
@@ -31,11 +32,6 @@ double height(const Multipole& p) {
 
 bool is_dipole(const Multipole& p) {
   return !(p.thickness < kThick) || p.decay * p.thickness > kNegligible;
-}
-
-// (1 - e^-x) / x, 1 at 0.
-double mean_decay(double x) {
-  return x > 0 ? -std::expm1(-x) / x : 1;
 }
 
 // sinh(s a) / sinh(s b), 0 <= a <= b, a / b at s = 0.

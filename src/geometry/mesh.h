@@ -76,6 +76,12 @@ inline bool meet(const Bounds& a, const Bounds& b) {
   return max_component(component_max(a.low, b.low) - component_min(a.high, b.high)) <= 0;
 }
 
+/// True if the outer box holds all of the inner one.
+inline bool contains(const Bounds& outer, const Bounds& inner) {
+  return component_min(outer.low, inner.low) == outer.low &&
+         component_max(outer.high, inner.high) == outer.high;
+}
+
 /// Bounding box of the vertices; low > high for an empty mesh.
 Bounds bounds(const Mesh& mesh);
 

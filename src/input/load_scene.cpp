@@ -181,7 +181,7 @@ Scene read_scene(const Document& document) {
     }
   if (const auto media = reader.find("media"))
     for (std::size_t i = 0; i < scene.media.size(); ++i)
-      read_layers(media->members()[i], mm_per_unit, scene.media, scene.media[i]);
+      read_layers(media->members()[i], mm_per_unit, scene.media, scene.media[i], scene.warnings);
   ShapeContext context{.mm_per_unit = mm_per_unit, .media = &scene.media};
   scene.shapes = read_named<Shape>(
       reader.find("shapes"), "shape",
@@ -458,7 +458,8 @@ Medium parse_medium(std::string_view text, const std::string& file) {
   document.root.key = "medium";
   const Value value(document, document.root, document.root.key, key_info("scene", "media"));
   Medium medium = read_medium(value, 1);
-  read_layers(value, 1, {}, medium);
+  std::vector<std::string> none;  // its layers would be media of a scene
+  read_layers(value, 1, {}, medium, none);
   return medium;
 }
 

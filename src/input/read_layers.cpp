@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -47,6 +48,18 @@ double mean_of(const Texture& texture) {
   return std::max(0., texture.source->mean()[texture.channel] * texture.scale.x);
 }
 
+/// Keys of a medium without effect in a layer: only its coefficients count.
+std::string keys_without_effect(const Medium& layer) {
+  std::vector<std::string> keys;
+  if (layer.tint_texture)
+    keys.push_back("texture of its colour");
+  else if (layer.tint != Rgb{1, 1, 1})
+    keys.push_back("'tint'");
+  if (layer.subsurface_weight < 1 || layer.weight_texture) keys.push_back("'subsurface_weight'");
+  if (layer.fuzz.weight > 0) keys.push_back("'fuzz_weight'");
+  return fmt::format("{}", fmt::join(keys, ", "));
+}
+
 void read_thickness(const Value& value, double mm_per_unit, MediumLayer& layer) {
   layer.thickness = 1;
   read_textured(value, layer.thickness, layer.thickness_texture);
@@ -56,7 +69,8 @@ void read_thickness(const Value& value, double mm_per_unit, MediumLayer& layer) 
 
 }  // namespace
 
-void read_layers(const Value& value, double mm_per_unit, std::span<const Medium> media, Medium& medium) {
+void read_layers(const Value& value, double mm_per_unit, std::span<const Medium> media, Medium& medium,
+                 std::vector<std::string>& warnings) {
   const ObjectReader reader(value, "medium");
   const auto layers = reader.find("layers");
   if (!layers) return;
@@ -73,6 +87,11 @@ void read_layers(const Value& value, double mm_per_unit, std::span<const Medium>
     if (i == 0 && !reader.find("specular_ior") && !reader.find("specular_weight")) medium.eta = own.eta;
     if (i == 0 && !reader.find("specular_roughness") && !own.roughness_texture)
       medium.specular_roughness = own.specular_roughness;
+    if (const std::string keys = keys_without_effect(own); !keys.empty())
+      warnings.push_back(
+          text_at(name.place(),
+                  fmt::format("'{}': only the scattering and absorption of '{}' count in a layer, not {}",
+                              name.path(), own.name, keys)));
     const auto thickness = one.find("thickness");
     const bool is_last = i + 1 == list.size();
     if (is_last && thickness)

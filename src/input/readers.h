@@ -53,7 +53,9 @@ Fuzz read_fuzz(const ObjectReader& reader);
 Medium read_medium(const Value& value, double mm_per_unit);
 /// Reads the layers of a medium, after all media: their order is free. Also sets its equivalent coefficients.
 /// in    medium: with the key `layers`, otherwise unchanged
-void read_layers(const Value& value, double mm_per_unit, std::span<const Medium> media, Medium& medium);
+/// out   warnings: of keys of its layers without effect, appended
+void read_layers(const Value& value, double mm_per_unit, std::span<const Medium> media, Medium& medium,
+                 std::vector<std::string>& warnings);
 /// Warnings of keys for another profile than the medium's.
 std::vector<std::string> keys_without_effect(const Value& value, const Medium& medium);
 /// `name`: default name of the shape.

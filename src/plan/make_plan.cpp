@@ -110,7 +110,12 @@ std::string layers_stage(const Medium& medium, Method method) {
                                                  : ": a homogeneous medium of the same reflectance and width "
                                                    "of scattering; \"profile\": \"tabulated\", or --method "
                                                    "volume_diffusion, has the layers";
-  return fmt::format("{} layers{}", medium.layers.size(), how);
+  const bool is_mean = !method_of(method).follows_textures_inside(true) &&
+                       std::ranges::any_of(medium.layers, [](const MediumLayer& l) {
+                         return l.thickness_texture.has_value();
+                       });
+  return fmt::format("{} layers{}{}", medium.layers.size(), how,
+                     is_mean ? "; textured thicknesses by their mean" : "");
 }
 
 void list_stages(const Scene& scene, std::span<const Light> lights, Plan& plan) {

@@ -7,7 +7,7 @@
 
 namespace opaline {
 
-/// A scene's other wavelengths with its camera, film and settings, and its dark lights.
+/// A scene's other wavelengths with its camera, film and settings.
 /// in    index: of Scene::other_wavelengths
 Scene at_other_wavelengths(const Scene& scene, std::size_t index);
 

@@ -175,6 +175,13 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
                      point_text(box.high, scene.mm_per_unit), where, advice);
 }
 
+/// True if the light emits nothing, nor do its other channels if it has a texture.
+bool is_dark(const Scene& scene, std::size_t light) {
+  const std::span<const Light> channels = std::span(scene.lights).subspan(light);
+  return std::ranges::all_of(channels.first(sharing_rays(channels)),
+                             [](const Light& one) { return emission(one) == Rgb{}; });
+}
+
 /// Problems of single lights, if the image is too dark.
 std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
   const Bounds box = box_of(world);
@@ -185,10 +192,8 @@ std::vector<std::string> weak_lights(const Scene& scene, const World& world) {
     if (l > 0 && share_rays(scene.lights[l - 1], light)) continue;  // another channel of a texture
     const std::optional<Vec3d> place = is_of_shape(light) ? std::nullopt : extent(light).center;
     const double distance = place ? length(*place - middle) : 0;
-    const std::span<const Light> channels = std::span(scene.lights).subspan(l);
-    const bool is_dark = std::ranges::all_of(channels.first(sharing_rays(channels)),
-                                             [](const Light& one) { return emission(one) == Rgb{}; });
-    if (is_dark)
+    if (is_dark(scene, l) &&
+        std::ranges::all_of(scene.other_wavelengths, [&](const Scene& other) { return is_dark(other, l); }))
       texts.push_back(fmt::format("the light {} emits nothing", light.name));
     else if (distance > kFarAway * world.diagonal * world.unit)
       texts.push_back(fmt::format(

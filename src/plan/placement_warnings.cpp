@@ -20,11 +20,6 @@ bool is_opaque_and_closed(const Scene& scene, const World& world, std::size_t me
   return !scene.shapes[mesh].medium && world.reports[mesh].open_edges == 0;
 }
 
-bool contains(const Bounds& outer, const Bounds& inner) {
-  return component_min(outer.low, inner.low) == outer.low &&
-         component_max(outer.high, inner.high) == outer.high;
-}
-
 /// True if the shape is around all tested vertices of the body.
 bool is_around(const World& world, std::size_t shape, const BodyPlan& body) {
   const auto is_in_box = [&](std::size_t m) { return contains(world.boxes[shape], world.boxes[m]); };

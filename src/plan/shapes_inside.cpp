@@ -39,10 +39,6 @@ bool is_inside(const RayScene& rays, const BodyPlan& body, const Vec3d& point) {
   return crossed > 0;
 }
 
-bool contains(const Bounds& outer, const Bounds& inner) {
-  return min_component(inner.low - outer.low) >= 0 && min_component(outer.high - inner.high) >= 0;
-}
-
 /// The part of a convex polygon in a box.
 std::vector<Vec3d> clipped(std::vector<Vec3d> polygon, const Bounds& box) {
   for (std::size_t plane = 0; plane < 6; ++plane) {

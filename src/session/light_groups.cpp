@@ -123,11 +123,16 @@ void scale_to_picture(Image& picture, std::span<const GroupPlaces> groups) {
   });
 }
 
-Scene lit_by(Scene scene, const LightGroup& group) {
+void darken_others(Scene& scene, const LightGroup& group) {
   for (std::size_t l = 0; l < scene.lights.size(); ++l)
     if (std::ranges::find(group.lights, l) == group.lights.end())
       scene.lights[l] = with_emission(scene.lights[l], {});
   if (scene.backdrop && group.layer != kBackdrop) scene.backdrop = Rgb{};
+  for (Scene& other : scene.other_wavelengths) darken_others(other, group);
+}
+
+Scene lit_by(Scene scene, const LightGroup& group) {
+  darken_others(scene, group);
   return scene;
 }
 

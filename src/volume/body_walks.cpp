@@ -26,7 +26,7 @@ double least_mean_free_path(const std::array<HomogeneousMedium, 3>& media) {
 std::optional<MediumVoxels> voxels_of(const VolumeInput& input, const Bounds& box) {
   if (!input.media_inside) return {};
   return std::optional<MediumVoxels>(std::in_place, input.media_inside, box,
-                                     kMediumVoxel * least_mean_free_path(input.media));
+                                     kMediumVoxel * least_mean_free_path(input.media), input.layers);
 }
 
 }  // namespace
@@ -138,7 +138,7 @@ class BodyWalks::Walker {
 
   // Delta tracking (Woodcock et al. 1965): flights use the densest medium, and some collisions are null.
   bool is_real_collision(const WalkState& state, double& albedo) {
-    const MediumVoxels::Local& local = body_.voxels_->at(state.position, channel_);
+    const MediumVoxels::Local local = body_.voxels_->at(state.position, channel_);
     albedo = double(local.albedo);
     return numbers_.next() * sigma_t_ < double(local.sigma_t);
   }

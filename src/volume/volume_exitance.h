@@ -36,6 +36,8 @@ struct VolumeInput {
   std::function<float(SurfacePoint&)> bend = {};
   OuterBoundary boundary = {};    ///< boundary of `media`; its fuzz holds light back
   MediaInside media_inside = {};  ///< heterogeneous medium, with `media` about its mean. Empty: homogeneous
+  std::vector<std::array<HomogeneousMedium, 3>> layers =
+      {};  ///< all media of `media_inside` if it has layers
 };
 
 /// Walks per sample, channel and light: default, and maximum with until_error.

@@ -286,6 +286,10 @@ TEST(CliFailures, UnusedMediaAreReported) {
   EXPECT_TRUE(contains(
       similar.err, "no shape uses the medium 'jede' of --set media.jede.... (did you mean 'jade'?); assign"))
       << similar.err;
+  const Outcome layer =
+      run_program({"info", folder.scene, "--set", "media.wax.preset=skin1", "--set",
+                   R"(media.marble={"layers": [{"medium": "wax", "thickness": 1}, {"medium": "wax"}]})"});
+  EXPECT_FALSE(contains(layer.err, "no shape uses")) << layer.err;
 }
 
 // Claim: a floor so large that rays from it start visibly above it is reported with the shape that it dwarfs, one of usual size is

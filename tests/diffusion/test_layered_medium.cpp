@@ -71,5 +71,20 @@ TEST(LayeredMedium, Extremes) {
   }
 }
 
+// Claim: a layer far thinner than any free path has no effect, at any depth. Source: definition. Tolerance: 1e-6. Fails if: rounding
+// over its thickness decides, which made bodies black or ended in an error.
+TEST(LayeredMedium, VanishingLayer) {
+  for (const double thickness : {1e-12, 1e-18, 1e-30, 1e-300})
+    for (const std::size_t layer : {0u, 1u}) {
+      std::array stack = kSkin;
+      stack[layer].thickness = thickness;
+      const ReducedMedium thin = equivalent_medium(stack, 1.4);
+      stack[layer].thickness = 0;
+      const ReducedMedium without = equivalent_medium(stack, 1.4);
+      EXPECT_NEAR(thin.mean_free_path / without.mean_free_path, 1, 1e-6) << layer << ' ' << thickness;
+      EXPECT_NEAR(thin.absorbed / without.absorbed, 1, 1e-6) << layer << ' ' << thickness;
+    }
+}
+
 }  // namespace
 }  // namespace opaline::test

@@ -64,5 +64,14 @@ TEST(SceneLayers, Errors) {
                    {"cannot be combined with"});
 }
 
+// Claim: what a layer's medium has beside its coefficients is reported. Fails if: a texture or fuzz of a layer is left out silently.
+TEST(SceneLayers, KeysWithoutEffect) {
+  const Scene scene = parse(R"({"media": {"a": {"layers": [{"medium": "b", "thickness": 1}, {"medium": "c"}]},
+      "b": {"sigma_a": 1, "sigma_s_prime": 2, "tint": 0.5, "fuzz_weight": 0.2}, "c": {"preset": "marble"}}})");
+  ASSERT_EQ(scene.warnings.size(), 1);
+  for (const char* part : {"'media.a.layers.0.medium'", "count in a layer, not 'tint', 'fuzz_weight'"})
+    EXPECT_NE(scene.warnings[0].find(part), std::string::npos) << scene.warnings[0];
+}
+
 }  // namespace
 }  // namespace opaline

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "lights/light.h"
 #include "session/light_groups.h"
 #include "spectra/wavelengths.h"
 #include "support/pictures.h"
@@ -196,6 +197,24 @@ TEST(SpectralImages, SessionsAndLightGroups) {
   EXPECT_LT(largest, 1e-5);
   scene.camera.position = {10, 6, 40};
   EXPECT_TRUE(same_pixels(picture_of(session, scene), cold_picture(scene)));
+}
+
+// Claim: a light of one narrow band shines in all groups of wavelengths it covers, and alone is no light that emits nothing.
+// Source: its integral, by three wavelengths in the band. Tolerance: it gives some green. Fails if: dark in the first group is dark in
+// all.
+TEST(SpectralImages, NarrowLightsShine) {
+  const std::string band = R"({"nm": [530, 540, 555], "values": [0, 40000, 0]})";
+  std::string text = scene_text(kGrey, "hierarchical", "");
+  text.replace(text.find("\"irradiance\": 3"), 15, "\"irradiance\": 0");
+  text.replace(text.find("\"intensity\": 400"), 16, "\"intensity\": " + band);
+  const Scene scene = parse_scene(text, "band.json");
+  ASSERT_FALSE(scene.other_wavelengths.empty());
+  ASSERT_TRUE(emission(scene.lights[1]) == Rgb{});
+  const Image image = cold_picture(scene);
+  double green = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) green += double(channel(image, x, y, "diffuse.G"));
+  EXPECT_GT(green, 1);
 }
 
 }  // namespace

@@ -70,9 +70,13 @@ VolumeInput walk_input(const PrecomputeInput& input, const Body& body, std::span
   walks.seed = hash_bits(settings.seed, 3000);
   walks.monitor = input.monitor;
   walks.reenter = settings.reenter;
-  walks.media_inside = media_inside(input, body, CubeCentre::own, [g, least](const ReducedMedium& reduced) {
-    return walked_medium(reduced, g, least);
-  });
+  const auto walked = [g, least](const ReducedMedium& reduced) { return walked_medium(reduced, g, least); };
+  walks.media_inside = media_inside(input, body, CubeCentre::own, walked);
+  for (const MediumLayer& layer : medium.layers) {
+    const std::array<ReducedMedium, 3> reduced =
+        reduced_media(layer.coefficients, medium.eta, input.world.unit);
+    walks.layers.push_back({walked(reduced[0]), walked(reduced[1]), walked(reduced[2])});
+  }
   return walks;
 }
 
