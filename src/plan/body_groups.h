@@ -14,6 +14,7 @@ namespace opaline {
 std::vector<BodyPlan> find_groups(const Scene& scene, const World& world, std::vector<std::string>& warnings);
 
 /// Model of a body by the profile of its medium (choose_models).
-BodyModel planned_model(const Scene& scene, const World& world, const BodyPlan& group);
+/// in    bodies: number of bodies of the scene
+BodyModel planned_model(const Scene& scene, const World& world, const BodyPlan& group, std::size_t bodies);
 
 }  // namespace opaline

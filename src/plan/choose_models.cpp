@@ -18,6 +18,7 @@
 #include "scene/names.h"
 #include "scene/scene_properties.h"
 #include "subsurface/method.h"
+#include "subsurface/plan_samples.h"
 
 namespace opaline {
 namespace {
@@ -71,6 +72,32 @@ MediumExtremes extremes_of(Medium medium) {
 
 BodyShape shape_of(const BodyPlan& group) {
   return {group.area, group.thickness, group.alignment};
+}
+
+/// True if a radial profile shades the body: `auto` prefers it to volume_diffusion where cells cannot resolve layers.
+bool uses_a_profile(const Scene& scene, const World& world, const BodyPlan& group, std::size_t bodies) {
+  switch (scene.settings.method) {
+    case Method::hierarchical:
+    case Method::direct:
+      return true;
+    case Method::automatic:
+      return is_too_large_for_layers(scene, world, fewest_samples(bodies), group);
+    default:
+      return false;
+  }
+}
+
+/// Layers are walked: the equivalent medium of dark skin is up to 12 % off in reflectance and 45 % in shape.
+BodyModel model_of(const Scene& scene, const World& world, const BodyPlan& group, const BodyShape& shape,
+                   std::size_t bodies) {
+  const Medium& medium = scene.media[group.medium];
+  BodyModel model = choose_model(medium, shape);
+  if (medium.layers.empty() || model.profile.kind == ProfileKind::multipole ||
+      !uses_a_profile(scene, world, group, bodies))
+    return model;
+  model.profile = {.kind = ProfileKind::tabulated};
+  model.reason = "layers, " + model.reason;
+  return model;
 }
 
 // Root mean square over the places: ears are more wrong than the head.
@@ -162,12 +189,12 @@ std::string model_error_text(const BodyModel& model, Method method, bool reenter
   return text + "; --method volume_diffusion: " + percent_text(*model.expected_error_of_diffusion);
 }
 
-BodyModel planned_model(const Scene& scene, const World& world, const BodyPlan& group) {
+BodyModel planned_model(const Scene& scene, const World& world, const BodyPlan& group, std::size_t bodies) {
   const Medium& medium = scene.media[group.medium];
   BodyShape shape = shape_of(group);
   if (method_of(scene.settings.method).has_model() && shape.thickness > 0)
     shape.local = local_thicknesses(world, group.meshes);
-  BodyModel model = choose_model(medium, shape);
+  BodyModel model = model_of(scene, world, group, shape, bodies);
   if (medium.profile) {
     model.is_chosen = false;
     model.reason = "set by the scene";
@@ -183,14 +210,15 @@ void choose_models(Scene& scene, const World& world, std::span<const BodyPlan> r
   if (std::ranges::all_of(scene.media, [](const Medium& m) { return m.profile.has_value(); })) return;
   std::vector<std::string> warnings;  // added by make_plan
   std::vector<bool> is_taken(scene.media.size());
-  for (const BodyPlan& group : find_groups(scene, world, warnings)) {
+  const std::vector<BodyPlan> groups = find_groups(scene, world, warnings);
+  for (const BodyPlan& group : groups) {
     if (scene.media[group.medium].profile) continue;
     const auto before = std::ranges::find_if(reference, [&](const BodyPlan& other) {
       return other.name == group.name && other.shared == group.shared && other.model.is_chosen;
     });
     const ChosenProfile chosen = before != reference.end()
                                      ? before->model.profile
-                                     : choose_model(scene.media[group.medium], shape_of(group)).profile;
+                                     : model_of(scene, world, group, shape_of(group), groups.size()).profile;
     std::size_t index = group.medium;
     if (is_taken[index] && scene.media[index].chosen != chosen) {
       scene.media.push_back(scene.media[index]);

@@ -104,12 +104,13 @@ std::string medium_stage(const Medium& medium, Method method) {
 }
 
 std::string layers_stage(const Medium& medium, Method method) {
-  const char* const how =
-      method_of(method).follows_textures_inside(true) ? " by the depth below the nearest surface point"
-      : medium.profile == ProfileKind::tabulated      ? ": random walks through the stack"
-                                                 : ": a homogeneous medium of the same reflectance and width "
-                                                   "of scattering; \"profile\": \"tabulated\", or --method "
-                                                   "volume_diffusion, has the layers";
+  const char* const how = method_of(method).follows_textures_inside(true)
+                              ? " by the depth below the nearest surface point"
+                          : profile_kind(medium) == ProfileKind::tabulated
+                              ? ": random walks through the stack"
+                              : ": a homogeneous medium of the same reflectance and width "
+                                "of scattering; \"profile\": \"tabulated\", or --method "
+                                "volume_diffusion, has the layers";
   const bool is_mean = !method_of(method).follows_textures_inside(true) &&
                        std::ranges::any_of(medium.layers, [](const MediumLayer& l) {
                          return l.thickness_texture.has_value();
@@ -293,7 +294,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   const std::vector<Light> lights = recentred_lights(scene, world);
   Plan plan;
   plan.groups = find_groups(scene, world, plan.warnings);
-  for (BodyPlan& group : plan.groups) group.model = planned_model(scene, world, group);
+  for (BodyPlan& group : plan.groups) group.model = planned_model(scene, world, group, plan.groups.size());
   plan.warnings.insert(plan.warnings.end(), scene.warnings.begin(), scene.warnings.end());
   std::set<std::string> said;  // reported by the first of several shapes from one file
   for (const MeshReport& report : world.reports)

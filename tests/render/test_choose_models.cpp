@@ -87,6 +87,27 @@ TEST(ChooseModels, NamedProfilesStay) {
   EXPECT_TRUE(model.expected_error_of_diffusion);
 }
 
+// Claim: layers are walked where a radial profile shades a body: by `hierarchical` and `direct`, and by `auto` where cells cannot
+// resolve them; not for plates, or first images. Source: choose_models.cpp. Fails if: the equivalent medium replaces layers silently.
+TEST(ChooseModels, LayersAreWalked) {
+  Scene scene = single_shape(SphereShape{{}, 8}, open_marble(), 500);
+  scene.settings.samples.reset();
+  scene.media[0].layers = {{"skin", {Rgb(.8), Rgb(4)}, .1}, {"fat", {Rgb(.01), Rgb(1.2)}}};
+  const auto chosen = [&](Method method, double radius) {
+    scene.settings.method = method;
+    scene.shapes[0].source = SphereShape{{}, radius};
+    return bodies_of(scene).at(0).model.profile.kind;
+  };
+  EXPECT_EQ(chosen(Method::hierarchical, 8), ProfileKind::tabulated);
+  EXPECT_EQ(chosen(Method::direct, 8), ProfileKind::tabulated);
+  EXPECT_EQ(chosen(Method::automatic, 800), ProfileKind::tabulated);
+  EXPECT_EQ(chosen(Method::automatic, 8), ProfileKind::normalized_diffusion);
+  EXPECT_EQ(chosen(Method::image_space, 8), ProfileKind::normalized_diffusion);
+  scene.settings.method = Method::hierarchical;
+  scene.shapes[0].source = SlabShape{{}, 30, 30, 1};
+  EXPECT_EQ(bodies_of(scene).at(0).model.profile.kind, ProfileKind::multipole);
+}
+
 // Claim: bodies of one medium choose each for itself, and the medium's other values stay. Choosing again changes nothing.
 // Fails if: the last body decides for all.
 TEST(ChooseModels, EachBodyForItself) {
