@@ -122,6 +122,7 @@ const std::vector<Kind>& kinds() {
        [](Reader r) -> PageMessage {
          return OpenFiles{r.text("drop"), r.texts("names", "a file name")};
        }},
+      {"light_by", {"do", "name"}, [](Reader r) -> PageMessage { return LightBy{r.text("name")}; }},
       {"save", {"do", "name"}, [](Reader r) -> PageMessage { return SaveScene{r.text("name")}; }},
       {"render", {"do", "name"}, [](Reader r) -> PageMessage { return RenderFile{r.text("name")}; }},
       {"layer", {"do", "name"}, [](Reader r) -> PageMessage { return ChooseLayer{r.text("name")}; }},

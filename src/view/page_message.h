@@ -36,6 +36,10 @@ struct OpenFiles {
   std::string drop;
   std::vector<std::string> names;
 };
+/// Replaces all lights by an environment map beside the scene (environments.h).
+struct LightBy {
+  std::string name;
+};
 struct SaveScene {
   std::string name;
 };
@@ -94,13 +98,13 @@ struct Pick {
 };
 
 using PageMessage =
-    std::variant<SetValues, Undo, Redo, Reset, Restore, OpenFiles, SaveScene, RenderFile, ChooseLayer,
-                 WorkBehind, ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook,
+    std::variant<SetValues, Undo, Redo, Reset, Restore, OpenFiles, LightBy, SaveScene, RenderFile,
+                 ChooseLayer, WorkBehind, ChooseSettings, FrameShown, GoToFrame, LookFrom, LookBack, KeepLook,
                  ChangeLights, Pick, Recall, KeyLook, RenameMedium, SetFloor, CancelFile>;
 
 /// in    text: {"do": "set", "values": {"media.marble.specular_ior": 1.4}, "stroke": 7}, {"do": "undo"},
 ///       {"do": "redo"}, {"do": "reset"}, {"do": "restore", "edits": ["media.marble.specular_ior=1.4"]},
-///       {"do": "open", "drop": "7", "names": ["a.obj", "a.mtl"]}, {"do": "save", "name": "a.json"}, {"do": "render", "name": "a.exr"}, {"do": "cancel_render"}, {"do": "layer", "name": "N"},
+///       {"do": "open", "drop": "7", "names": ["a.obj", "a.mtl"]}, {"do": "light_by", "name": "sky.exr"}, {"do": "save", "name": "a.json"}, {"do": "render", "name": "a.exr"}, {"do": "cancel_render"}, {"do": "layer", "name": "N"},
 ///       {"do": "behind", "trade": true, "reference": "direct"}, {"do": "choose", "error": 0.01}, {"do":
 ///       "frame", "frame": 7}, {"do": "shown", "frame": 3}, {"do": "look", "position": [0, 0, 5], "look_at":
 ///       [0, 0, 0]}, {"do": "look_back"}, {"do": "keep_look"}, {"do": "key_look"}, {"do": "lights", "change": "copy", "index": 1},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <filesystem>
+#include <ranges>
 #include <utility>
 
 #include "asset_files/asset_file.h"
@@ -16,6 +17,7 @@
 #include "scene/names.h"
 #include "values/frame_name.h"
 #include "values/json_tree.h"
+#include "view/environments.h"
 #include "view/view_json.h"
 #include "view/view_server_state.h"
 
@@ -70,6 +72,7 @@ void ViewServer::State::act(PageConnection& page, const PageMessage& message) {
     if (const std::string lost = edits.restore(restore->edits); !lost.empty())
       page.answer(told_text(false, "not restored, as the view cannot change files: " + lost));
   if (const auto* files = std::get_if<OpenFiles>(&message)) open(page, *files);
+  if (const auto* map = std::get_if<LightBy>(&message)) light_by(map->name);
   if (const auto* save_as = std::get_if<SaveScene>(&message)) save(page, save_as->name);
   if (const auto* file = std::get_if<RenderFile>(&message)) render_file(page, file->name);
   if (std::holds_alternative<CancelFile>(message)) file_monitor.cancelled = true;
@@ -123,7 +126,10 @@ void ViewServer::State::after_edit(bool has_new_files) {
   reference.reset();
   renderer->show(edits.scene(), edits.revision(), edits.reference(), has_new_files);
   watch.watch(edits.files());
-  tell(PageText::scene, scene_text(edits, hooks.command(edits.file(), edits.overrides(), edits.frame())));
+  find_environments();
+  const auto names = std::views::keys(environments);
+  tell(PageText::scene, scene_text(edits, hooks.command(edits.file(), edits.overrides(), edits.frame()),
+                                   {names.begin(), names.end()}));
   if (!std::exchange(shows_progress, true)) show_progress();
 }
 
@@ -145,6 +151,25 @@ void ViewServer::State::open(PageConnection& page, const OpenFiles& files) {
     throw;
   }
   page.answer(told_text(true, "opened " + path));
+}
+
+void ViewServer::State::light_by(const std::string& name) {
+  const auto found = environments.find(name);
+  if (found == environments.end())
+    throw bad_file(edits.file(), "no environment map of this name is offered", "a name from the list",
+                   "'" + printable(name) + "'");
+  edits.light_by(found->second);
+}
+
+/// Environment maps beside the scene, and where the view began.
+void ViewServer::State::find_environments() {
+  const auto folder_of = [](const std::string& path) {
+    return std::filesystem::path(path).parent_path().string();
+  };
+  if (edits.file() == offered_for) return;
+  offered_for = edits.file();
+  if (first_folder.empty()) first_folder = folder_of(edits.file());
+  environments = environments_in({folder_of(edits.file()), first_folder});
 }
 
 /// Files of the scene have changed on the disk. Stages are reused if none of them is a mesh.

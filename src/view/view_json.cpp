@@ -93,7 +93,8 @@ std::string schema_text() {
   return compact({{"is", "schema"}, {"rows", rows}, {"presets", presets}, {"version", OPALINE_VERSION}});
 }
 
-std::string scene_text(const SceneEdits& edits, const std::string& command) {
+std::string scene_text(const SceneEdits& edits, const std::string& command,
+                       const std::vector<std::string>& environments) {
   Json look;
   if (const std::optional<LookFrom>& own = edits.own_camera())
     look = {{"position", Json::parse(own->position)}, {"look_at", Json::parse(own->look_at)}};
@@ -108,6 +109,7 @@ std::string scene_text(const SceneEdits& edits, const std::string& command) {
                   {"redo", edits.can_redo()},
                   {"floor", edits.has_floor()},
                   {"command", command},
+                  {"environments", environments},
                   {"frames", edits.frames()},
                   {"frame", edits.frame().value_or(1)}});
 }

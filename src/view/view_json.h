@@ -17,8 +17,9 @@ namespace opaline {
 std::string schema_text();
 
 /// "scene": all values, the free camera, the edits, availability of undo and redo, and the frames.
-/// command: renders the same from the scene's camera
-std::string scene_text(const SceneEdits& edits, const std::string& command);
+/// in    command: renders the same from the scene's camera; environments: names of environment maps offered
+std::string scene_text(const SceneEdits& edits, const std::string& command,
+                       const std::vector<std::string>& environments);
 
 /// "plan": requirements of the scene, in words, and the bounds of its shapes in scene units.
 /// in    boxes: one per shape, mm

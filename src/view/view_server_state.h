@@ -34,6 +34,8 @@ struct ViewServer::State {
   void after_edit(bool has_new_files = false);
   std::string by_scene_camera() const;
   void open(PageConnection& page, const OpenFiles& dropped);
+  void light_by(const std::string& name);
+  void find_environments();
   void reload(const std::set<std::string>& files);
   void pick(PageConnection& page, const Pick& place);
   void set_floor(bool is_on);
@@ -72,9 +74,11 @@ struct ViewServer::State {
   std::unique_ptr<ViewBackground> background;
   BackgroundWork asked;  ///< requested background work
   PageConnection* picking = nullptr;
-  std::vector<Bounds> boxes;            ///< bounds of the shapes, as last loaded, mm
-  std::uint32_t first_revision = 0;     ///< first one of the opened scene; boxes of earlier ones are stale
-  std::set<std::string> changed_files;  ///< since the scene was read
+  std::vector<Bounds> boxes;         ///< bounds of the shapes, as last loaded, mm
+  std::uint32_t first_revision = 0;  ///< first one of the opened scene; boxes of earlier ones are stale
+  std::map<std::string, std::string> environments;  ///< offered ones, by name
+  std::string offered_for, first_folder;            ///< scene file of `environments`; folder of the first one
+  std::set<std::string> changed_files;              ///< since the scene was read
   FileWatch watch{io, [this](const std::set<std::string>& files) { reload(files); }};
 };
 

@@ -79,6 +79,33 @@ TEST_F(ViewDrops, AnAssetReplacesTheScene) {
   EXPECT_EQ(left(), (std::vector<std::string>{"a-2/a.obj", "a/box/a.mtl", "a/box/a.obj", "a/box/b.json"}));
 }
 
+// Claim: lat-long images beside the scene, and in a folder beside it, are offered; one replaces the lights as an edit; no other file
+// can be named. Fails if: renders are offered, or a page reads any file of the machine.
+TEST_F(ViewDrops, EnvironmentsBesideTheSceneAreOffered) {
+  const auto white = [](int, int) { return std::array<double, 3>{1, 1, 1}; };
+  std::filesystem::create_directories(folder.file("maps/deeper"));
+  put_exr(folder.file("maps/sky.exr"), 8, 4, white);
+  put_exr(folder.file("maps/deeper/far.exr"), 8, 4, white);
+  put_exr(folder.file("render.exr"), 8, 8, white);
+  view.reset();
+  view.emplace(folder.scene);
+  ViewClient page(*view);
+  ASSERT_TRUE(page.read_final());
+  const nlohmann::json& scene = page.texts.at("scene");
+  const auto& offered = scene.at("environments");
+  EXPECT_NE(std::ranges::find(offered, "maps/sky.exr"), offered.end()) << offered;
+  for (const char* name : {"render.exr", "maps/deeper/far.exr"}) {
+    EXPECT_EQ(std::ranges::find(offered, name), offered.end()) << offered;
+    page.send({{"do", "light_by"}, {"name", name}});
+    EXPECT_TRUE(contains(page.read_answer(), "no environment map of this name is offered"));
+  }
+  page.send({{"do", "light_by"}, {"name", "maps/sky.exr"}});
+  ASSERT_TRUE(page.read_final(2));
+  const auto& lights = page.texts.at("scene").at("scene").at("lights");
+  ASSERT_EQ(lights.size(), 1u);
+  EXPECT_EQ(lights.at(0).at("type"), "environment");
+}
+
 // Claim: an environment map replaces the lights as an edit: undone, and saved in a scene that opens. Fails if it is no
 // step of undo, or if the rule against edits of files refuses it.
 TEST_F(ViewDrops, AnEnvironmentMapReplacesTheLights) {

@@ -108,7 +108,7 @@ export class Knobs {
     for (const name of Object.keys(scene.media || {})) group(`media.${name}`, `Medium ${name}`, this.mediumRows(name));
     (scene.lights || []).forEach((light, i) => group(`lights.${i}`, `Light ${light.name || i}`, this.rowsOf(`light.${light.type}`, this.pathOf("lights", i), (s) => s.lights[i], ["type", "name"]).concat(
       this.buttons([["Copy", {do: "lights", change: "copy", index: i}], ["Remove", {do: "lights", change: "remove", index: i}]]))));
-    this.root.append(this.buttons([["Add light", {do: "lights", change: "add", index: 0}]]));
+    this.root.append(this.lightButtons());
     group("scene", "Scene", ["surroundings", "backdrop", "mm_per_unit"].map((key) => this.knob("scene", key, key, (s) => s[key])).concat(this.floorRow()));
     (scene.shapes || []).forEach((shape, i) => group(`shapes.${i}`, `Shape ${shape.name || i}`, [...this.materialRow(i), this.sizeRow(i),
       ...[...("medium" in shape ? [] : ["reflectance", ...kGloss.filter((key) => key in shape), "shadow_catcher"]), ...("emission" in shape ? ["emission"] : []), "normals", "visible"].map((key) =>
@@ -122,6 +122,22 @@ export class Knobs {
   buttons(messages) {
     return make("p", {className: "buttons"}, ...messages.map(([textContent, message]) =>
       make("button", {type: "button", textContent, onclick: () => this.step(message)})));
+  }
+
+  // The maps of the server's scene; a choice replaces all lights.
+  lightButtons() {
+    const root = this.buttons([["Add light", {do: "lights", change: "add", index: 0}]]);
+    const choice = make("select", {ariaLabel: "Light by an environment map", title: "Replace all lights by an environment map beside the scene",
+      onchange: () => this.step({do: "light_by", name: choice.value})});
+    const show = (names) => {
+      if (names.join("\n") === choice.dataset.names) return;
+      choice.dataset.names = names.join("\n");
+      choice.replaceChildren(new Option("Light by\u2026", ""), ...names.map((name) => new Option(name)));
+      choice.hidden = !names.length;
+    };
+    root.append(choice);
+    this.knobs.push({path: "environments", root, value: (s) => s.environments || [], show: (names) => { show(names); choice.value = ""; }});
+    return root;
   }
 
   floorRow() {

@@ -273,7 +273,7 @@ function takeScene(message) {
   const isNewFile = state.path !== message.path;
   state.path = message.path;
   if (isNewFile) ahead.clear();
-  serverScene = {...message.scene, look: message.look, floor: message.floor};
+  serverScene = {...message.scene, look: message.look, floor: message.floor, environments: message.environments};
   Object.assign(state, {revision: message.revision, edits: message.edits, command: message.command});
   takeValues();
   takeFilm();
