@@ -142,7 +142,8 @@ std::vector<LightGroup> light_groups(const Scene& scene) {
   const Method method = scene.settings.method;
   if (!method_of(method).separates_lights())
     throw refused({scene.file}, "noise differs between lights with this method",
-                  "a method other than direct and volume", std::string(name_of(method)));
+                  "--method volume_diffusion, or another than direct and volume",
+                  std::string(name_of(method)));
   if (scene.lights.empty()) throw refused({scene.file}, "the scene has no lights", "a light");
   for (const Shape& shape : scene.shapes)
     if (shape.catches_shadows)
