@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/input_file.h"
@@ -25,16 +26,19 @@ std::vector<double> numbers_of(const Value& list, const Range& range) {
   return numbers;
 }
 
-/// Two columns, nm and value, separated by blanks, commas or semicolons; '#' begins a comment.
+/// Two columns, nm and value, separated by blanks, commas or semicolons, below at most one line of headings; '#' begins a
+/// comment.
 Spectrum read_file(const Value& name, const Range& range) {
   constexpr std::string_view kSeparators = " \t\r\v\f,;";
   const std::string path = name.file_path();
   Spectrum spectrum;
+  bool has_headings = false;
   const auto read_line = [&](const std::string_view line, std::size_t number) {
     std::string_view rest = line.substr(0, line.find('#'));
     std::vector<double> row;
     for (std::string_view word; !(word = next_word(rest, kSeparators)).empty();) {
       const std::optional<double> value = number_of(word);
+      if (!value && row.empty() && spectrum.nm.empty() && !std::exchange(has_headings, true)) return;
       if (!value)
         throw Error(ErrorKind::bad_input, path, int(number), int(word.data() - line.data()) + 1,
                     "the spectrum has no number here", "nm and a value", printable(word));

@@ -18,7 +18,6 @@
 namespace opaline {
 namespace {
 
-constexpr std::size_t kMostSteps = 1000;
 constexpr int kMostKeyedFrames = 100000;
 
 std::vector<std::string> mesh_files(const Scene& scene) {
@@ -117,7 +116,7 @@ void SceneEdits::set(const SetValues& message) {
 
 /// at_frame: keyed values get a key at the frame, instead of one value
 void SceneEdits::change(const SetValues& message, bool at_frame) {
-  Edits edits = history_[at_];
+  Edits edits = history_.edits();
   Look look = look_;
   for (const Assignment& given : message.values) {
     if (moves_camera(given.path)) look.reset();
@@ -127,12 +126,12 @@ void SceneEdits::change(const SetValues& message, bool at_frame) {
     drop_replaced_surface(edits, change.path);
     edits.push_back(change.path + '=' + change.value);
   }
-  if (edits == history_[at_]) return;
+  if (edits == history_.edits()) return;
   Scene scene = parsed(edits, look);
   look_ = std::move(look);
   const bool goes_on = message.stroke != 0 && message.stroke == stroke_;
   if (goes_on) {
-    history_[at_] = std::move(edits);
+    history_.replace(std::move(edits));
   } else {
     push(std::move(edits));
   }
@@ -143,10 +142,7 @@ void SceneEdits::change(const SetValues& message, bool at_frame) {
 
 /// Adds a step of undo.
 void SceneEdits::push(Edits edits) {
-  history_.resize(at_ + 1);
-  history_.push_back(std::move(edits));
-  if (history_.size() > kMostSteps) history_.erase(history_.begin());
-  at_ = history_.size() - 1;
+  history_.push(std::move(edits));
   stroke_ = 0;
 }
 
@@ -159,18 +155,18 @@ void SceneEdits::replace(Edits all) {
 }
 
 void SceneEdits::go_to(std::size_t place) {
-  scene_ = parsed(history_[place], look_);
-  at_ = place;
+  scene_ = parsed(history_.edits_at(place), look_);
+  history_.go_to(place);
   stroke_ = 0;
   ++revision_;
 }
 
 void SceneEdits::undo() {
-  if (can_undo()) go_to(at_ - 1);
+  if (can_undo()) go_to(history_.place() - 1);
 }
 
 void SceneEdits::redo() {
-  if (can_redo()) go_to(at_ + 1);
+  if (can_redo()) go_to(history_.place() + 1);
 }
 
 void SceneEdits::reset() {
@@ -214,7 +210,6 @@ std::string SceneEdits::reload() {
   SceneEdits opened(file_, given_, given_frames_);
   opened.with_files_ = with_files_;
   opened.history_ = history_;
-  opened.at_ = at_;
   std::string lost;
   try {
     if (std::ranges::find(opened.frames_, frame_) != opened.frames_.end()) opened.frame_ = frame_;
@@ -222,9 +217,7 @@ std::string SceneEdits::reload() {
     opened.look_ = look_;
   } catch (const Error& failure) {
     lost = failure.what();
-    opened.history_.resize(at_ + 1);
-    opened.history_.emplace_back();
-    ++opened.at_;
+    opened.history_.push({});
     opened.scene_ = opened.read({}, {}, opened.frame_);
   }
   opened.revision_ = revision_ + 1;

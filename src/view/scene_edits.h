@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "opaline/scene.h"
+#include "view/edit_history.h"
 #include "view/page_message.h"
 
 namespace opaline {
@@ -93,10 +94,10 @@ class SceneEdits {
   const std::string& file() const { return file_; }
   /// Number of changes, from 1.
   std::uint32_t revision() const { return revision_; }
-  bool can_undo() const { return at_ > 0; }
-  bool can_redo() const { return at_ + 1 < history_.size(); }
+  bool can_undo() const { return history_.can_undo(); }
+  bool can_redo() const { return history_.can_redo(); }
   /// Edits as `--set` takes them, without those of the command line.
-  const std::vector<std::string>& edits() const { return history_[at_]; }
+  const std::vector<std::string>& edits() const { return history_.edits(); }
   /// Overrides of a command making this scene from the file.
   std::vector<std::string> overrides() const;
 
@@ -106,7 +107,7 @@ class SceneEdits {
   std::string file_text() const;
 
  private:
-  using Edits = std::vector<std::string>;
+  using Edits = EditHistory::Edits;
   using Look = std::optional<LookFrom>;
   Scene parsed(const Edits& edits, const Look& look) const;
   Scene read(const Edits& edits, const Look& look, int frame) const;
@@ -123,8 +124,7 @@ class SceneEdits {
   Edits placed_;  // placement of an asset's default camera and lights
   Edits given_;
   Edits with_files_;  // edits made here: they may name files
-  std::vector<Edits> history_{Edits{}};
-  std::size_t at_ = 0;
+  EditHistory history_;
   std::uint64_t stroke_ = 0;  // stroke of the last step; 0: closed
   std::uint32_t revision_ = 1;
   std::vector<int> frames_, given_frames_;

@@ -153,13 +153,14 @@ TEST(SceneSpectra, Files) {
         with_medium(R"({"sigma_s_prime": 1, "sigma_a": {"spectrum": "blood.csv", "scale": 2}})"),
         folder.file("scene.json"));
   };
-  const Scene scene = read("# nm, 1/mm\n400, 1\n\n700;1 # end\n");
-  EXPECT_EQ(std::get<PhysicalMedium>(scene.media[0].coefficients).sigma_a, Rgb(2));
+  for (const char* contents : {"# nm, 1/mm\n400, 1\n\n700;1 # end\n", "wavelength,sigma_a\n400,1\n700,1\n"})
+    EXPECT_EQ(std::get<PhysicalMedium>(read(contents).media[0].coefficients).sigma_a, Rgb(2)) << contents;
   for (const auto& [contents, message] : {std::pair{"400 1\n500 red\n", "blood.csv:2:5"},
                                           {"400 1\n300 1\n", "blood.csv:2"},
                                           {"400\n", "blood.csv:1"},
                                           {"# nothing\n", "without a line"},
-                                          {"400 nan\n", "blood.csv:1:5"}})
+                                          {"400 nan\n", "blood.csv:1:5"},
+                                          {"nm value\n1/mm 1\n400 1\n", "blood.csv:2:1"}})
     try {
       read(contents);
       ADD_FAILURE() << contents;
