@@ -123,11 +123,18 @@ PreintegratedField::Place PreintegratedField::through(const SurfacePoint& point,
 }
 
 // Distance from a hit without own occluders: light spreads around nearer ones, and crosses to the far side of a ball.
-float PreintegratedField::first_occluder(const Place& place, const Vec3f& towards, float thickness) const {
+float PreintegratedField::first_occluder(const SurfacePoint& point, const Place& place, const Vec3f& towards,
+                                         float thickness) const {
   constexpr float kMost = 10;  // widths
-  if (thickness > 0) return std::max(thickness * 1.001f, medium_.width);
-  const float chord = -2 * dot(place.normal, towards) / std::max(place.curvature, 1e-9f);
-  return std::clamp(1.1f * chord, medium_.width, kMost * medium_.width);
+  const float chord = -2 * dot(place.normal, towards) / std::max(place.curvature, 1e-9f),
+              of_ball = std::min(1.1f * chord, kMost * medium_.width),
+              behind = thickness > 0 ? share_behind(dot(point.normal, towards)) : 0;
+  return std::max({thickness * 1.001f, (1 - behind) * of_ball, medium_.width});
+}
+
+// Origin of a ray through the body. The position of a hit is up to one offset above the surface.
+Vec3f PreintegratedField::below(const SurfacePoint& point) {
+  return point.position - point.geometric * (2 * point.offset);
 }
 
 // Distance through the body to the entry point of the light.
@@ -137,8 +144,8 @@ void PreintegratedField::find_thickness(std::span<const SurfacePoint> points,
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < incident.size(); ++i) {
     const SurfacePoint& point = points[incident[i].hit];
-    if (!(share_behind(dot(point.normal, incident[i].towards)) > 0)) continue;
-    inside.push_back({Ray(point.position - point.geometric * point.offset, incident[i].towards), {}});
+    if (!(dot(point.geometric, incident[i].towards) < 0)) continue;
+    inside.push_back({Ray(below(point), incident[i].towards), {}});
     numbers.push_back(i);
   }
   rays_.intersect(inside);
@@ -153,14 +160,17 @@ void PreintegratedField::add_unoccluded(std::span<const SurfacePoint> points, st
   std::vector<Ray> shadow;
   std::vector<std::size_t> numbers;
   std::vector<RgbF> returned;  // exitance over irradiance across the direction
+  shadow.reserve(incident.size());
+  numbers.reserve(incident.size());
+  returned.reserve(incident.size());
   for (std::size_t i = 0; i < incident.size(); ++i) {
     const auto& [hit, towards, distance, irradiance, thickness] = incident[i];
     const SurfacePoint& point = points[hit];
     const RgbF response_here =
         response(through(point, smooth[hit], towards, thickness), point.normal, towards);
-    const float near = first_occluder(smooth[hit], towards, thickness) + point.offset;
+    const float near = first_occluder(point, smooth[hit], towards, thickness) + point.offset;
     if (!(near < distance) || !(max_component(response_here) > 0)) continue;
-    const Vec3f from = point.position + point.geometric * (thickness > 0 ? 0 : point.offset);
+    const Vec3f from = thickness > 0 ? below(point) : point.position + point.geometric * point.offset;
     shadow.emplace_back(from + towards * near, towards, (distance - near) * .9999f);
     numbers.push_back(i);
     returned.push_back(response_here);

@@ -60,7 +60,9 @@ class PreintegratedField : public Field {
   };
   Place smooth_at(const SurfacePoint& point, const Hit& hit) const;
   Place through(const SurfacePoint& point, const Place& place, const Vec3f& towards, float thickness) const;
-  float first_occluder(const Place& place, const Vec3f& towards, float thickness) const;
+  float first_occluder(const SurfacePoint& point, const Place& place, const Vec3f& towards,
+                       float thickness) const;
+  static Vec3f below(const SurfacePoint& point);
   /// in    lights: sharing their rays
   void add_lights(const PointIrradianceInput& lighting, std::span<const Light> lights,
                   std::span<const Place> smooth, LeavingLight& result) const;
