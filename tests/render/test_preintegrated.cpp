@@ -97,6 +97,21 @@ TEST(Preintegrated, CurvatureOfMeshes) {
   }
 }
 
+// Claim: blurred normals of a ball stay normals of the ball where its triangles change size, and so does its curvature. Source:
+// symmetry. Tolerance: a tenth of a degree; 1 %. Fails if: all neighbours of a vertex count alike.
+TEST(Preintegrated, BlurKeepsABall) {
+  const World ball = make_world(single_shape(SphereShape{{}, 5}, marble(), 100));
+  const Mesh& mesh = ball.meshes[0];
+  const std::vector<Vec3f> normals = blurred_normals(mesh, .8 / ball.unit);
+  const Vec3d centre = -ball.origin / ball.unit;
+  double most = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    most = std::max(most, length(cross(Vec3d(normals[i]), normalized(mesh.positions[i] - centre))));
+  EXPECT_LT(most, .1 * kPi / 180);
+  for (const float curvature : mean_curvature(mesh, normals))
+    ASSERT_NEAR(double(curvature) / ball.unit * 5, 1, .01);
+}
+
 // Claim: in even light, balls of any size that absorb nothing are white as diffuse reflection is; without lights they are black. Source: energy.
 // Tolerance: 1 %. Fails if: only the upper hemisphere lights a ball, or its own far side hides light.
 TEST(Preintegrated, Furnace) {
