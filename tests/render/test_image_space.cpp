@@ -95,6 +95,24 @@ TEST(ImageSpace, IsTheHierarchicalSum) {
   }
 }
 
+// The same without a mean: largest difference over the largest value of the other.
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most / std::ranges::max(b);
+}
+
+// Claim: terminators have no bites, as by `hierarchical`. Source: the same sum over other points. Tolerance: 3 % of the
+// brightest pixel. Fails if: the pixels of a light's view are as wide at grazing angles as across the light.
+TEST(ImageSpace, SmoothTerminators) {
+  Scene scene = lit_ball({point_light({30, 40, 40}, Rgb(6000))});
+  scene.settings.samples = 3000;
+  scene.media = {grey_medium(.3, .1, 1.4)};
+  scene.film.resolution = {128, 128};
+  EXPECT_LT(largest_difference(reds_by(scene, Method::image_space), reds_by(scene, Method::hierarchical)),
+            .03);
+}
+
 // Claim: a light inside the box of a body is seen all around it. Source: the flux of rays in all directions, as by
 // `hierarchical`. Tolerance: 3 %. Fails if: one plane before the light is its view.
 TEST(ImageSpace, LightInTheMiddleOfARing) {

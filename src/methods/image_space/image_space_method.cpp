@@ -17,8 +17,9 @@
 namespace opaline {
 namespace {
 
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr double kLeastTolerance = .02;  // a finer sum changes the error by less than 0.01 %
+constexpr double kSpacing = 1.1;         // pixels over samples; pays for the rays of oblique pixels
 constexpr double kBytesOfSample = 300;   // while the tree is built; bench_plan
 
 struct ImageSpaceState : MethodState {
@@ -138,8 +139,7 @@ void ImageSpaceMethod::prepare(BodyStages& stages) const {
   const World& world = stages.input.world;
   const double spacing = body.plan.spacing / world.unit;
   const ResultSource source = stages.store.get(state.lit, lit_key(stages, spacing), [&] {
-    // A face at 60 degrees to a light then has the planned spacing.
-    std::vector<FluxSample> points = seen_from_lights(stages.input, body, spacing * std::sqrt(.5));
+    std::vector<FluxSample> points = seen_from_lights(stages.input, body, kSpacing * spacing);
     ImageSpaceState::Lit lit{.tree = build_octree(std::move(points)),
                              .kernel = make_split_kernel(body.profile, spacing, world.diagonal,
                                                          stages.input.scene.settings.laboratory.near_field,
