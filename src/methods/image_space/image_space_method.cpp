@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bodies/surface_textures.h"
 #include "exitance/evaluate.h"
@@ -17,8 +18,9 @@
 namespace opaline {
 namespace {
 
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 constexpr double kLeastTolerance = .02;  // a finer sum changes the error by less than 0.01 %
+constexpr double kSpacing = 1.1;         // pixels over samples; pays for the rays of oblique pixels
 constexpr double kBytesOfSample = 300;   // while the tree is built; bench_plan
 
 struct ImageSpaceState : MethodState {
@@ -36,7 +38,9 @@ class ImageSpaceField : public Field {
       : input_(input),
         boundary_(body.boundary),
         total_(body.profile.total),
-        lit_(state_of<ImageSpaceState>(body).lit.value) {}
+        lit_(state_of<ImageSpaceState>(body).lit.value) {
+    if (has_maps(input.scene, body.plan.meshes)) maps_.emplace(input.scene, input.world);
+  }
 
   LeavingLight at(const SurfaceHits& hits, PointIrradianceInput lighting, const Pass& pass,
                   HeldView::Surface* held) const override;
@@ -45,11 +49,34 @@ class ImageSpaceField : public Field {
   bool reflects() const override { return true; }
 
  private:
+  std::vector<RgbF> by_blurred_normals(const SurfaceHits& hits, PointIrradianceInput lighting,
+                                       int samples) const;
+
   const RenderInput& input_;
+  std::optional<SurfaceTextures> maps_;  // none: the body has no maps of normals and heights
   OuterBoundary boundary_;
   RgbF total_;
   const ImageSpaceState::Lit& lit_;
 };
+
+// Irradiance at the hits with maps filtered over the near field, as at samples. Held light has the normals of the pixels.
+std::vector<RgbF> ImageSpaceField::by_blurred_normals(const SurfaceHits& hits, PointIrradianceInput lighting,
+                                                      int samples) const {
+  constexpr float kWidth = .4f;  // times the radius of the near field: the spacing of the samples
+  std::vector<SurfacePoint> points(lighting.points.begin(), lighting.points.end());
+  std::vector<float> factors(points.size(), 1);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!hits.textures[i].is_bent) continue;
+    const Hit& hit = hits.hits[i];
+    points[i].normal = input_.rays.surface_point(hit.mesh, hit.triangle, hit.u, hit.v).normal;
+    points[i].width = kWidth * lit_.kernel.radius;
+    factors[i] = maps_->bend(points[i]);
+  }
+  lighting.points = points;
+  std::vector<RgbF> irradiance = irradiance_at_hits(lighting, samples, nullptr);
+  for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i] *= factors[i];
+  return irradiance;
+}
 
 // The near field has the irradiance of the hit itself: views from the lights have no points in shadow, so
 // their mean around a hit would be too bright there.
@@ -60,7 +87,8 @@ LeavingLight ImageSpaceField::at(const SurfaceHits& hits, PointIrradianceInput l
   LeavingLight light;
   if (lit_.kernel.needs_irradiance()) {
     const int samples = pass.is_seen ? input_.scene.film.samples_per_pixel : 1;
-    light.irradiance = irradiance_at_hits(lighting, samples, held);
+    light.irradiance =
+        maps_ ? by_blurred_normals(hits, lighting, samples) : irradiance_at_hits(lighting, samples, held);
     tint_entering(hits.textures, light.irradiance, {});
   }
   std::vector<Query> queries;
@@ -138,8 +166,7 @@ void ImageSpaceMethod::prepare(BodyStages& stages) const {
   const World& world = stages.input.world;
   const double spacing = body.plan.spacing / world.unit;
   const ResultSource source = stages.store.get(state.lit, lit_key(stages, spacing), [&] {
-    // A face at 60 degrees to a light then has the planned spacing.
-    std::vector<FluxSample> points = seen_from_lights(stages.input, body, spacing * std::sqrt(.5));
+    std::vector<FluxSample> points = seen_from_lights(stages.input, body, kSpacing * spacing);
     ImageSpaceState::Lit lit{.tree = build_octree(std::move(points)),
                              .kernel = make_split_kernel(body.profile, spacing, world.diagonal,
                                                          stages.input.scene.settings.laboratory.near_field,

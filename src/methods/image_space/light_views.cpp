@@ -45,21 +45,31 @@ double stepped(double value) {
 /// Rectangle of a view's plane, covered by pixels on a fixed lattice: in motion, points stay.
 struct Grid {
   double low_u = 1e300, high_u = -1e300, low_v = 1e300, high_v = -1e300;
+  std::array<double, 2> shift{};  // position of the lattice, in pixels
 
   void add(double u, double v) {
     low_u = std::min(low_u, u), high_u = std::max(high_u, u);
     low_v = std::min(low_v, v), high_v = std::max(high_v, v);
   }
-  /// Calls use(u, v, area) at the middle of each pixel.
+  struct Size {
+    std::size_t columns = 0, rows = 0;
+    double side = 0;
+  };
+  /// Calls use(u, v, area) at the middle of each pixel, row by row.
   template <class Use>
-  void for_each_pixel(double spacing, std::size_t most, const Use& use) const {
+  Size for_each_pixel(double spacing, std::size_t most, const Use& use) const {
     const double width = high_u - low_u, height = high_v - low_v;
     const double side = stepped(std::max(
         {spacing, 1.2 * std::sqrt(width * height / double(most)), std::max(width, height) / double(most)}));
-    const double first_u = std::floor(low_u / side), first_v = std::floor(low_v / side);
-    for (double row = first_v; row * side < high_v; ++row)
-      for (double column = first_u; column * side < high_u; ++column)
+    const double first_u = std::floor(low_u / side - shift[0]) + shift[0],
+                 first_v = std::floor(low_v / side - shift[1]) + shift[1];
+    Size size{.side = side};
+    for (double row = first_v; row * side < high_v; ++row, ++size.rows) {
+      size.columns = 0;
+      for (double column = first_u; column * side < high_u; ++column, ++size.columns)
         use((column + .5) * side, (row + .5) * side, side * side);
+    }
+    return size;
   }
 };
 
@@ -74,11 +84,13 @@ void add_perspective(const Vec3d& position, const Vec3d& forward, const Grid& gr
                      std::size_t most, LightView& view) {
   Vec3d x, y;
   tangent_frame(forward, x, y);
-  grid.for_each_pixel(spacing, most, [&](double u, double v, double area) {
+  const std::size_t first = view.rays.size();
+  const auto [columns, rows, side] = grid.for_each_pixel(spacing, most, [&](double u, double v, double area) {
     const double length2 = 1 + u * u + v * v, length = std::sqrt(length2);
     view.rays.emplace_back(Vec3f(position), Vec3f((forward + x * u + y * v) / length));
     view.measures.push_back(float(area / (length2 * length)));
   });
+  view.planes.push_back({first, columns, rows, Vec3f(x * side), Vec3f(y * side), Vec3f(forward)});
 }
 
 bool is_all_around(const Light& light) {
@@ -159,26 +171,105 @@ class Views {
   /// in    count: views of the light
   std::vector<FluxSample> points(const LightView& view, std::span<const Light> lights, const Standpoint& from,
                                  int count) const {
-    constexpr std::size_t kChunk = 4096;
-    std::vector<std::vector<FluxSample>> parts(chunk_count(view.rays.size(), kChunk));
-    parallel_chunks(view.rays.size(), kChunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+    constexpr std::size_t kChunk = 4096, kParted = 256;
+    std::vector<std::uint8_t> parts(view.rays.size());  // 0: the middle of the pixel is not on the body
+    std::vector<FluxSample> all;
+    collect(view.rays.size(), kChunk, all, [&](std::size_t begin, std::size_t end, Collected& found) {
       std::vector<TracedRay> rays;
       for (std::size_t i = begin; i < end; ++i) rays.push_back({view.rays[i], {}});
       input_.rays.intersect(rays);
       for (std::size_t i = begin; i < end; ++i) {
         const TracedRay& met = rays[i - begin];
-        if (met.hit.mesh == Hit::kMiss || !is_own_[met.hit.mesh]) continue;
-        const float measure =
-            view.is_parallel ? view.measures[i] : view.measures[i] * met.ray.far * met.ray.far;
-        add(met, measure, lights, from, count, parts[chunk]);
+        if (!is_own(met)) continue;
+        parts[i] = parts_of(met);
+        if (parts[i] == 1) add(met, measure(view, i, met), lights, from, count, found);
       }
     });
-    std::vector<FluxSample> all;
-    for (const std::vector<FluxSample>& part : parts) all.insert(all.end(), part.begin(), part.end());
+    const std::vector<Parted> parted = parted_pixels(view, parts);
+    collect(parted.size(), kParted, all, [&](std::size_t begin, std::size_t end, Collected& found) {
+      const std::span<const Parted> pixels = std::span(parted).subspan(begin, end - begin);
+      std::vector<TracedRay> rays = rays_of_parts(view, pixels);
+      input_.rays.intersect(rays);
+      auto met = rays.begin();
+      for (const auto& [plane, pixel, count_of_parts] : pixels)
+        for (unsigned k = 0; k < count_of_parts; ++k, ++met)
+          if (is_own(*met))
+            add(*met, measure(view, pixel, *met) / float(count_of_parts), lights, from, count, found);
+    });
     return all;
   }
 
  private:
+  using Collected = std::vector<FluxSample>;
+  /// A pixel seen by several rays.
+  struct Parted {
+    const LightView::Plane* plane;
+    std::size_t pixel;
+    std::uint8_t parts;
+  };
+
+  // Appends the samples found by find(begin, end, found) in each chunk, in order.
+  template <class Find>
+  static void collect(std::size_t n, std::size_t chunk, std::vector<FluxSample>& all, const Find& find) {
+    std::vector<Collected> found(chunk_count(n, chunk));
+    parallel_chunks(n, chunk,
+                    [&](std::size_t begin, std::size_t end, std::size_t i) { find(begin, end, found[i]); });
+    for (const Collected& some : found) all.insert(all.end(), some.begin(), some.end());
+  }
+
+  bool is_own(const TracedRay& met) const { return met.hit.mesh != Hit::kMiss && is_own_[met.hit.mesh]; }
+
+  static std::vector<TracedRay> rays_of_parts(const LightView& view, std::span<const Parted> pixels) {
+    std::vector<TracedRay> rays;
+    for (const auto& [plane, pixel, parts] : pixels)
+      for (unsigned k = 0; k < parts; ++k) {
+        const auto [u, v] = part(k, parts);
+        rays.push_back({view.ray(*plane, pixel, u, v), {}});
+      }
+    return rays;
+  }
+
+  // Hammersley's points about the middle of a pixel.
+  static std::array<float, 2> part(unsigned k, unsigned parts) {
+    float reversed = 0, digit = .5f;
+    for (unsigned rest = k; rest > 0; rest /= 2, digit /= 2) reversed += float(rest % 2) * digit;
+    const float first = .5f / float(parts) - .5f;
+    return {float(k) / float(parts) + first, reversed + first};
+  }
+
+  // An oblique pixel covers a long strip; its parts have about the area of one seen from the front.
+  static std::uint8_t parts_of(const TracedRay& met) {
+    constexpr int kMost = 16;
+    const float across = length(met.hit.edges_cross),
+                facing = across > 0 ? -dot(met.hit.edges_cross, met.ray.direction) / across : 0;
+    int parts = 1;
+    while (facing > 0 && parts < kMost && float(parts) * facing < 1) parts *= 2;
+    return std::uint8_t(parts);
+  }
+
+  // Oblique pixels, and those beyond an outline beside them.
+  static std::vector<Parted> parted_pixels(const LightView& view, std::span<const std::uint8_t> parts) {
+    std::vector<Parted> parted;
+    for (const LightView::Plane& plane : view.planes)
+      for (std::size_t row = 0; row < plane.rows; ++row)
+        for (std::size_t column = 0; column < plane.columns; ++column) {
+          const std::size_t pixel = plane.first + row * plane.columns + column;
+          std::uint8_t own = parts[pixel];
+          if (own == 0) {
+            for (std::size_t r = std::max<std::size_t>(row, 1) - 1; r < std::min(plane.rows, row + 2); ++r)
+              for (std::size_t c = std::max<std::size_t>(column, 1) - 1;
+                   c < std::min(plane.columns, column + 2); ++c)
+                own = std::max(own, parts[plane.first + r * plane.columns + c]);
+          }
+          if (own > 1) parted.push_back({&plane, pixel, own});
+        }
+    return parted;
+  }
+
+  static float measure(const LightView& view, std::size_t pixel, const TracedRay& met) {
+    return view.is_parallel ? view.measures[pixel] : view.measures[pixel] * met.ray.far * met.ray.far;
+  }
+
   // Grazing pixels cover long strips; their area is limited, as their light is.
   void add(const TracedRay& met, float across, std::span<const Light> lights, const Standpoint& from,
            int count, std::vector<FluxSample>& points) const {
@@ -216,27 +307,37 @@ class Views {
 
 }  // namespace
 
-LightView parallel_view(const Bounds& box, const Vec3d& towards, double reach, double spacing) {
+LightView parallel_view(const Bounds& box, const Vec3d& towards, double reach, double spacing,
+                        std::array<double, 2> shift) {
   Vec3d x, y;
   tangent_frame(towards, x, y);
   const Vec3d centre = .5 * (box.low + box.high);
-  Grid grid;
+  Grid grid{.shift = shift};
   for (const Vec3d& corner : corners_of(box)) grid.add(dot(corner, x), dot(corner, y));
-  LightView view{.rays = {}, .measures = {}, .is_parallel = true};
+  LightView view{.rays = {}, .measures = {}, .is_parallel = true, .planes = {}};
   const Vec3d outside = towards * (dot(centre, towards) + 2 * reach);
-  grid.for_each_pixel(spacing, kMostPixelsOfView, [&](double u, double v, double area) {
-    view.rays.emplace_back(Vec3f(outside + x * u + y * v), Vec3f(-towards));
-    view.measures.push_back(float(area));
-  });
+  const auto [columns, rows, side] =
+      grid.for_each_pixel(spacing, kMostPixelsOfView, [&](double u, double v, double area) {
+        view.rays.emplace_back(Vec3f(outside + x * u + y * v), Vec3f(-towards));
+        view.measures.push_back(float(area));
+      });
+  view.planes.push_back({0, columns, rows, Vec3f(x * side), Vec3f(y * side), {}});
   return view;
 }
 
-LightView view_from(const Bounds& box, const Vec3d& position, double spacing) {
+Ray LightView::ray(const Plane& plane, std::size_t pixel, float u, float v) const {
+  const Ray& middle = rays[pixel];
+  const Vec3f shift = plane.x * u + plane.y * v;
+  if (is_parallel) return {middle.origin + shift, middle.direction};
+  return {middle.origin, normalized(middle.direction * (1 / dot(middle.direction, plane.forward)) + shift)};
+}
+
+LightView view_from(const Bounds& box, const Vec3d& position, double spacing, std::array<double, 2> shift) {
   constexpr double kNear = .2;  // times the distance of the box's centre
   const Vec3d centre = .5 * (box.low + box.high);
   const double distance = length(centre - position), radius = .5 * length(box.high - box.low);
   LightView view;
-  Grid grid;
+  Grid grid{.shift = shift};
   bool is_in_front = distance > 0;
   if (is_in_front) {
     const Vec3d forward = steady((centre - position) / distance);
@@ -275,13 +376,16 @@ std::vector<FluxSample> seen_from_lights(const PrecomputeInput& input, const Bod
     const std::vector<Standpoint> from =
         standpoints(sharing, Vec3f(centre), input.scene.settings.light_samples,
                     light_seed(input.scene.settings.seed, sharing[0]));
-    // Points of several views are less even, so there are four times as many.
-    const double apart = from.size() > 1 ? .5 * spacing * std::sqrt(double(from.size())) : spacing;
-    for (const Standpoint& one : from) {
+    // Points of several views are less even, so there are almost four times as many.
+    const double apart = from.size() > 1 ? .52 * spacing * std::sqrt(double(from.size())) : spacing;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const Standpoint& one = from[i];
       const Vec3d towards(one.direction);
+      // The lattices of similar views interleave.
+      const std::array<double, 2> shift = r2_point(i, {});
       const LightView view = std::isfinite(one.distance)
-                                 ? view_from(box, centre + towards * double(one.distance), apart)
-                                 : parallel_view(box, towards, input.world.diagonal, apart);
+                                 ? view_from(box, centre + towards * double(one.distance), apart, shift)
+                                 : parallel_view(box, towards, input.world.diagonal, apart, shift);
       const std::vector<FluxSample> points = views.points(view, sharing, one, int(from.size()));
       all.insert(all.end(), points.begin(), points.end());
     }

@@ -2,6 +2,7 @@
 // Views from lights: the points of a body reached by each light, where it enters.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,13 +30,28 @@ struct LightView {
   std::vector<Ray> rays;
   std::vector<float> measures;
   bool is_parallel = false;
+
+  /// A rectangle of pixels, row by row.
+  struct Plane {
+    std::size_t first, columns, rows;  // indices of rays
+    Vec3f x, y;                        // sides of a pixel; perspective: at distance 1
+    Vec3f forward;                     // perspective
+  };
+  std::vector<Plane> planes;
+
+  /// A ray through a pixel beside its middle.
+  /// in    u, v: from -1/2 to 1/2, in sides of the pixel
+  Ray ray(const Plane& plane, std::size_t pixel, float u, float v) const;
 };
 
 /// Parallel rays from outside of the scene.
-/// in    towards: unit, to the light; reach: diagonal of the scene; spacing: of the pixels, world units
-LightView parallel_view(const Bounds& box, const Vec3d& towards, double reach, double spacing);
+/// in    towards: unit, to the light; reach: diagonal of the scene; spacing: of the pixels, world units; shift: of
+///       their lattice, in pixels
+LightView parallel_view(const Bounds& box, const Vec3d& towards, double reach, double spacing,
+                        std::array<double, 2> shift = {});
 /// Rays from a point, through a plane behind which the box lies, or through six around the point.
 /// in    spacing: of the pixels at the box's centre
-LightView view_from(const Bounds& box, const Vec3d& position, double spacing);
+LightView view_from(const Bounds& box, const Vec3d& position, double spacing,
+                    std::array<double, 2> shift = {});
 
 }  // namespace opaline

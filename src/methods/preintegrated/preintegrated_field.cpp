@@ -67,11 +67,12 @@ MediumResponse make_response(const Medium& medium, const World& world) {
     }
     const CalibratedMedium& calibrated = media.emplace_back(reduced);
     if (!(reduced.sigma_s > 0)) continue;
-    const double half = half_contrast(calibrated);
-    inverse_width += half / kHalfOfGaussian / 3;
-    kept[c] = float(kept_contrast(calibrated, 2 * half));
+    inverse_width += half_contrast(calibrated) / kHalfOfGaussian / 3;
     total[c] = float(HalfSpace(1 - reduced.albedo(), reduced.eta).diffuse_share());
   }
+  const double wave_number = 2 * kHalfOfGaussian * inverse_width;  // typical for the blurred details
+  for (std::size_t c = 0; c < 3; ++c)
+    if (total[c] > 0) kept[c] = float(kept_contrast(media[c], wave_number));
   return {SphereResponse({media[0], media[1], media[2]}), kept, total,
           inverse_width > 0 ? float(1 / inverse_width) : 0};
 }
@@ -95,39 +96,54 @@ PreintegratedField::PreintegratedField(const RenderInput& input, const Body& bod
   for (std::size_t m = 0; m < surfaces.size(); ++m) surfaces_[body.plan.meshes[m]] = &surfaces[m];
 }
 
-PreintegratedField::Place PreintegratedField::smooth_at(const SurfacePoint& point, const Hit& hit) const {
+PreintegratedField::Place PreintegratedField::smooth_at(const SurfacePoint& point, const Hit& hit,
+                                                        bool is_bent) const {
+  const Vec3f unbent =
+      is_bent ? rays_.surface_point(hit.mesh, hit.triangle, hit.u, hit.v).normal : point.normal;
   const auto& [normals, curvatures] = *surfaces_[hit.mesh];
-  if (normals.empty()) return {point.normal, 0};
+  if (normals.empty()) return {unbent, unbent, 0};
   const Mesh& mesh = world_.meshes[hit.mesh];
-  return {normalized(at_hit<Vec3f>(mesh, normals, hit)), at_hit<float>(mesh, curvatures, hit)};
+  return {normalized(at_hit<Vec3f>(mesh, normals, hit)), unbent, at_hit<float>(mesh, curvatures, hit)};
 }
 
+// Maps bend normals in light alone: behind the terminator, bumps lie in the body's shadow.
 RgbF PreintegratedField::response(const Place& place, const Vec3f& normal, const Vec3f& towards) const {
-  const float cosine = dot(normal, towards), smooth = dot(place.normal, towards);
+  constexpr float kLit = .2f;  // cosine of full detail
+  const float cosine = dot(normal, towards), smooth = dot(place.normal, towards),
+              unbent = dot(place.unbent, towards);
   const SphereResponse& ball = medium_.ball;
   const RgbF curved = ball.at(smooth, place.curvature);
   if (cosine == smooth) return curved;
-  return component_max(RgbF(0), curved + medium_.kept * (ball.at(cosine, 0) - ball.at(smooth, 0)));
+  const RgbF flat = ball.at(unbent, 0);
+  RgbF detail = flat - ball.at(smooth, 0);
+  if (cosine != unbent) detail += (ball.at(cosine, 0) - flat) * std::clamp(unbent / kLit, 0.f, 1.f);
+  return component_max(RgbF(0), curved + medium_.kept * detail);
 }
 
 // Ball with this chord in the direction, by the shading normal; near the horizon, the smooth surface.
-PreintegratedField::Place PreintegratedField::through(const SurfacePoint& point, const Place& place,
-                                                      const Vec3f& towards, float thickness) const {
-  const float cosine = dot(point.normal, towards), behind = share_behind(cosine);
+PreintegratedField::Place PreintegratedField::through(const Place& place, const Vec3f& towards,
+                                                      float thickness) const {
+  const float cosine = dot(place.unbent, towards), behind = share_behind(cosine);
   if (!(behind > 0)) return place;
   const float convex = std::max(0.f, place.curvature);
   const float least =
       std::min(.5f * medium_.width, -2 * cosine / std::max(convex, 1e-9f));  // bumps are no body
-  return {normalized(point.normal * behind + place.normal * (1 - behind)),
+  return {normalized(place.unbent * behind + place.normal * (1 - behind)), place.unbent,
           behind * -2 * cosine / std::max(thickness, least) + (1 - behind) * convex};
 }
 
 // Distance from a hit without own occluders: light spreads around nearer ones, and crosses to the far side of a ball.
 float PreintegratedField::first_occluder(const Place& place, const Vec3f& towards, float thickness) const {
   constexpr float kMost = 10;  // widths
-  if (thickness > 0) return std::max(thickness * 1.001f, medium_.width);
-  const float chord = -2 * dot(place.normal, towards) / std::max(place.curvature, 1e-9f);
-  return std::clamp(1.1f * chord, medium_.width, kMost * medium_.width);
+  const float chord = -2 * dot(place.normal, towards) / std::max(place.curvature, 1e-9f),
+              of_ball = std::min(1.1f * chord, kMost * medium_.width),
+              behind = thickness > 0 ? share_behind(dot(place.unbent, towards)) : 0;
+  return std::max({thickness * 1.001f, (1 - behind) * of_ball, medium_.width});
+}
+
+// Origin of a ray through the body. The position of a hit is up to one offset above the surface.
+Vec3f PreintegratedField::below(const SurfacePoint& point) {
+  return point.position - point.geometric * (2 * point.offset);
 }
 
 // Distance through the body to the entry point of the light.
@@ -137,8 +153,8 @@ void PreintegratedField::find_thickness(std::span<const SurfacePoint> points,
   std::vector<std::size_t> numbers;
   for (std::size_t i = 0; i < incident.size(); ++i) {
     const SurfacePoint& point = points[incident[i].hit];
-    if (!(share_behind(dot(point.normal, incident[i].towards)) > 0)) continue;
-    inside.push_back({Ray(point.position - point.geometric * point.offset, incident[i].towards), {}});
+    if (!(dot(point.geometric, incident[i].towards) < 0)) continue;
+    inside.push_back({Ray(below(point), incident[i].towards), {}});
     numbers.push_back(i);
   }
   rays_.intersect(inside);
@@ -153,14 +169,16 @@ void PreintegratedField::add_unoccluded(std::span<const SurfacePoint> points, st
   std::vector<Ray> shadow;
   std::vector<std::size_t> numbers;
   std::vector<RgbF> returned;  // exitance over irradiance across the direction
+  shadow.reserve(incident.size());
+  numbers.reserve(incident.size());
+  returned.reserve(incident.size());
   for (std::size_t i = 0; i < incident.size(); ++i) {
     const auto& [hit, towards, distance, irradiance, thickness] = incident[i];
     const SurfacePoint& point = points[hit];
-    const RgbF response_here =
-        response(through(point, smooth[hit], towards, thickness), point.normal, towards);
+    const RgbF response_here = response(through(smooth[hit], towards, thickness), point.normal, towards);
     const float near = first_occluder(smooth[hit], towards, thickness) + point.offset;
     if (!(near < distance) || !(max_component(response_here) > 0)) continue;
-    const Vec3f from = point.position + point.geometric * (thickness > 0 ? 0 : point.offset);
+    const Vec3f from = thickness > 0 ? below(point) : point.position + point.geometric * point.offset;
     shadow.emplace_back(from + towards * near, towards, (distance - near) * .9999f);
     numbers.push_back(i);
     returned.push_back(response_here);
@@ -173,7 +191,7 @@ void PreintegratedField::add_unoccluded(std::span<const SurfacePoint> points, st
     const float cosine = std::min(1.f, dot(point.normal, light.towards));
     const OuterBoundary boundary = boundary_.at(point);
     result.exitance[light.hit] += returned[r] * light.irradiance * past_fuzz(boundary, cosine);
-    if (cosine > 0)
+    if (cosine > 0 && dot(smooth[light.hit].unbent, light.towards) > 0)
       result.irradiance[light.hit] += light.irradiance * (cosine * boundary.transmittance(cosine));
   }
 }
@@ -223,7 +241,8 @@ LeavingLight PreintegratedField::at(const SurfaceHits& hits, PointIrradianceInpu
   std::vector<Place> smooth;
   std::vector<std::uint64_t> keys;
   for (std::size_t i = 0; i < count; ++i) {
-    smooth.push_back(smooth_at(hits.points[i], hits.hits[i]));
+    const bool is_bent = !hits.textures.empty() && hits.textures[i].is_bent;
+    smooth.push_back(smooth_at(hits.points[i], hits.hits[i], is_bent));
     keys.push_back(key_in_pixel(lighting.keys[i], std::uint64_t(pass.is_seen ? samples_per_pixel_ : 1)));
   }
   lighting.keys = keys;

@@ -16,7 +16,7 @@ namespace opaline {
 /// Response of a medium, the same for all its bodies.
 struct MediumResponse {
   SphereResponse ball;
-  RgbF kept;        ///< contrast of detail
+  RgbF kept;        ///< contrast of detail finer than the width, in each channel
   RgbF total;       ///< exitance of a flat body over even transmitted irradiance
   float width = 0;  ///< blur of details, world units; 0: none, light leaves where it enters
 };
@@ -47,7 +47,8 @@ class PreintegratedField : public Field {
 
  private:
   struct Place {
-    Vec3f normal;
+    Vec3f normal;  // blurred
+    Vec3f unbent;  // shading normal without maps
     float curvature = 0;
   };
   /// Light of one direction at a hit.
@@ -58,9 +59,10 @@ class PreintegratedField : public Field {
     RgbF irradiance;      // across the direction
     float thickness = 0;  // body along the ray to a light behind it; 0: the hit faces the light
   };
-  Place smooth_at(const SurfacePoint& point, const Hit& hit) const;
-  Place through(const SurfacePoint& point, const Place& place, const Vec3f& towards, float thickness) const;
+  Place smooth_at(const SurfacePoint& point, const Hit& hit, bool is_bent) const;
+  Place through(const Place& place, const Vec3f& towards, float thickness) const;
   float first_occluder(const Place& place, const Vec3f& towards, float thickness) const;
+  static Vec3f below(const SurfacePoint& point);
   /// in    lights: sharing their rays
   void add_lights(const PointIrradianceInput& lighting, std::span<const Light> lights,
                   std::span<const Place> smooth, LeavingLight& result) const;

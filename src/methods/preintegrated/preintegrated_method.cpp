@@ -9,7 +9,7 @@
 namespace opaline {
 namespace {
 
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 
 StageKey response_key(const Medium& medium, const World& world) {
   KeyBuilder key("response of balls", kVersion);
