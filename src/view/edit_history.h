@@ -32,7 +32,7 @@ class EditHistory {
 
   std::vector<Step> steps_{Step{}};
   std::size_t at_ = 0;
-  Edits edits_;  // of steps_[at_]
+  Edits edits_;  // texts of steps_[at_]
 };
 
 }  // namespace opaline
