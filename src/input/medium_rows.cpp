@@ -69,8 +69,7 @@ std::span<const MediumRow> medium_rows() {
           "layers of other media below the surface, from the surface inwards; the last one fills the rest. "
           "`volume_diffusion` and `volume` have them by the depth below the nearest surface point; "
           "`hierarchical` and `direct` by random walks through the stack (the profile `tabulated`, their "
-          "default "
-          "with layers); other methods use a homogeneous medium of the same reflectance and width of "
+          "default with layers); other methods use a homogeneous medium of the same reflectance and width of "
           "scattering"),
       row("medium.layers", "medium", text, "", kFiniteNumber, "",
           "name of a homogeneous medium; its index of refraction is that of the layered medium"),

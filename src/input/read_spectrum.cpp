@@ -26,19 +26,28 @@ std::vector<double> numbers_of(const Value& list, const Range& range) {
   return numbers;
 }
 
+constexpr std::string_view kSeparators = " \t\r\v\f,;";
+
+/// True for a line of words, none of them a number.
+bool are_headings(std::string_view line) {
+  std::size_t words = 0;
+  for (std::string_view word; !(word = next_word(line, kSeparators)).empty(); ++words)
+    if (number_of(word)) return false;
+  return words > 0;
+}
+
 /// Two columns, nm and value, separated by blanks, commas or semicolons, below at most one line of headings; '#' begins a
 /// comment.
 Spectrum read_file(const Value& name, const Range& range) {
-  constexpr std::string_view kSeparators = " \t\r\v\f,;";
   const std::string path = name.file_path();
   Spectrum spectrum;
   bool has_headings = false;
   const auto read_line = [&](const std::string_view line, std::size_t number) {
     std::string_view rest = line.substr(0, line.find('#'));
+    if (spectrum.nm.empty() && are_headings(rest) && !std::exchange(has_headings, true)) return;
     std::vector<double> row;
     for (std::string_view word; !(word = next_word(rest, kSeparators)).empty();) {
       const std::optional<double> value = number_of(word);
-      if (!value && row.empty() && spectrum.nm.empty() && !std::exchange(has_headings, true)) return;
       if (!value)
         throw Error(ErrorKind::bad_input, path, int(number), int(word.data() - line.data()) + 1,
                     "the spectrum has no number here", "nm and a value", printable(word));

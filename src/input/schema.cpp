@@ -306,8 +306,7 @@ std::vector<KeyInfo> spectrum_rows() {
           "1"),
       row("spectrum", "spectrum", file, "", kFiniteNumber, "",
           "text file with a wavelength in nm and a value per line, in place of `nm` and `values`, below "
-          "at most one line of headings; `#` begins "
-          "a comment"),
+          "at most one line of headings; `#` begins a comment"),
       row("spectrum", "blackbody", number, "K", {200, 1e6}, "",
           "lights: a black body of this temperature, with the luminance of the colour 1"),
       row("spectrum", "illuminant", choice, "", kFiniteNumber, "",

@@ -177,6 +177,7 @@ std::string nothing_in_view(const Scene& scene, const World& world) {
 
 /// True if the light emits nothing, nor do its other channels if it has a texture.
 bool is_dark(const Scene& scene, std::size_t light) {
+  if (light >= scene.lights.size()) return true;
   const std::span<const Light> channels = std::span(scene.lights).subspan(light);
   return std::ranges::all_of(channels.first(sharing_rays(channels)),
                              [](const Light& one) { return emission(one) == Rgb{}; });

@@ -169,7 +169,8 @@ void ViewServer::State::find_environments() {
   if (edits.file() == offered_for) return;
   offered_for = edits.file();
   if (first_folder.empty()) first_folder = folder_of(edits.file());
-  environments = environments_in({folder_of(edits.file()), first_folder});
+  const std::string folder = folder_of(edits.file());
+  environments = folder == first_folder ? environments_in({folder}) : environments_in({folder, first_folder});
 }
 
 /// Files of the scene have changed on the disk. Stages are reused if none of them is a mesh.

@@ -160,7 +160,8 @@ TEST(SceneSpectra, Files) {
                                           {"400\n", "blood.csv:1"},
                                           {"# nothing\n", "without a line"},
                                           {"400 nan\n", "blood.csv:1:5"},
-                                          {"nm value\n1/mm 1\n400 1\n", "blood.csv:2:1"}})
+                                          {"nm value\n1/mm 1\n400 1\n", "blood.csv:2:1"},
+                                          {"4OO 1\n500 1\n", "blood.csv:1:1"}})
     try {
       read(contents);
       ADD_FAILURE() << contents;
