@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <filesystem>
-#include <ranges>
 #include <utility>
 
 #include "asset_files/asset_file.h"
@@ -127,9 +126,10 @@ void ViewServer::State::after_edit(bool has_new_files) {
   renderer->show(edits.scene(), edits.revision(), edits.reference(), has_new_files);
   watch.watch(edits.files());
   find_environments();
-  const auto names = std::views::keys(environments);
-  tell(PageText::scene, scene_text(edits, hooks.command(edits.file(), edits.overrides(), edits.frame()),
-                                   {names.begin(), names.end()}));
+  std::vector<std::string> names;
+  for (const auto& [name, path] : environments) names.push_back(name);
+  tell(PageText::scene,
+       scene_text(edits, hooks.command(edits.file(), edits.overrides(), edits.frame()), names));
   if (!std::exchange(shows_progress, true)) show_progress();
 }
 
