@@ -52,9 +52,9 @@ std::array<ReducedMedium, 3> LayeredMedia::at(const Vec3d& position, const Neare
   double top = 0;
   for (std::size_t i = 0; i < medium_.layers.size() && top < last; ++i) {
     const MediumLayer& layer = medium_.layers[i];
-    const auto factor = double(number_at(pointer_to(layer.thickness_texture), place).value_or(1));
+    const auto factor = double(factor_at(pointer_to(layer.thickness_texture), place));
     const bool is_last = i + 1 == medium_.layers.size();
-    const double bottom = is_last ? last : top + layer.thickness * std::max(0., factor) / world_.unit;
+    const double bottom = is_last ? last : top + layer.thickness * factor / world_.unit;
     const double share = std::max(0., std::min(bottom, last) - std::max(top, first)) / (last - first);
     sigma_a += layer.coefficients.sigma_a * share;
     sigma_s_prime += layer.coefficients.sigma_s_prime * share;

@@ -300,6 +300,11 @@ RgbF color_at(const Texture& texture, const SurfaceTextures::Place& place) {
   return texture.is_relative ? color : component_min(color, RgbF(1));
 }
 
+float factor_at(const Texture* texture, const SurfaceTextures::Place& place) {
+  if (texture == nullptr) return 1;
+  return std::max(0.f, looked_up(*texture, place)[texture->channel] * float(texture->scale.x));
+}
+
 std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Place& place) {
   if (texture == nullptr) return {};
   return std::clamp(looked_up(*texture, place)[texture->channel] * float(texture->scale.x), 0.0f, 1.0f);
@@ -434,7 +439,7 @@ StageKey medium_key(const Scene& scene, const World& world, std::span<const std:
   const Medium& medium = scene.media[scene.shapes[meshes.front()].medium.value()];
   if (!varies_inside(medium)) return {};
   if (!medium.layers.empty()) {
-    KeyBuilder key("layers inside", 1);
+    KeyBuilder key("layers inside", 2);
     key.add(medium.eta);
     for (const MediumLayer& layer : medium.layers) {
       key.add(layer.coefficients).add(layer.thickness);

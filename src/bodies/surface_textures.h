@@ -98,7 +98,9 @@ SolidPlace solid_place(const SolidSpace& space, const World& world, std::uint32_
 bool has_whole_faces(const Shape& shape);
 /// Colour of a texture at a point, with its details.
 RgbF color_at(const Texture& texture, const SurfaceTextures::Place& place);
-/// Number of a texture; none: no texture.
+/// Number of a texture of lengths, not limited to 1; 1: no texture.
+float factor_at(const Texture* texture, const SurfaceTextures::Place& place);
+/// Number of a texture, from 0 to 1; none: no texture.
 std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Place& place);
 /// The same for a colour.
 std::optional<RgbF> color_at(const Texture* texture, const SurfaceTextures::Place& place);

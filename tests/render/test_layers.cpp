@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "diffusion/layered_albedo.h"
+#include "support/pictures.h"
 #include "support/scene_picture.h"
 #include "transport/half_space.h"
 #include "transport/laboratory.h"
@@ -29,11 +30,11 @@ const std::string kSkinLayers =
     R"([{"medium": "epidermis", "thickness": 0.1}, {"medium": "dermis", "thickness": 2}, {"medium": "fat"}])";
 
 double mean_red(const std::string& layers, const std::string& medium,
-                const std::vector<std::string>& overrides) {
+                const std::vector<std::string>& overrides, const ScratchFolder& folder = {}) {
   std::string text = kFlat;
   text.replace(text.find("LAYERS"), 6, layers);
   text.replace(text.find("MEDIUM"), 6, medium);
-  const Image image = picture_of(ScratchFolder(), text, overrides);
+  const Image image = picture_of(folder, text, overrides);
   const auto red = std::size_t(std::ranges::find(image.channels, "diffuse.R") - image.channels.begin());
   double sum = 0;
   for (std::size_t at = red; at < image.pixels.size(); at += image.channels.size())
@@ -83,6 +84,24 @@ TEST(Layers, EqualLayersAreOneMedium) {
     const std::vector<std::string> by{std::string("settings.method=") + method};
     EXPECT_NEAR(mean_red(equal, "skin", by) / mean_red(equal, "plain", by), 1, .01) << method;
   }
+}
+
+// Claim: a texture of thickness, times its scale, is the thickness in scene units, above 1 as well. Source: scenes/README.md.
+// Tolerance: 1e-3 of the texel apart in a corner. Fails if: texels times their scale end at 1 as those of colours do.
+TEST(Layers, TexturedThicknessAboveOne) {
+  const ScratchFolder folder;
+  put_exr(folder.file("depth.exr"), 16, 16, [](int x, int y) {
+    const double depth = x + y == 0 ? .9 : 1;
+    return std::array{depth, depth, depth};
+  });
+  const auto returned = [&](const std::string& thickness) {
+    const std::string layers =
+        R"([{"medium": "plain", "thickness": )" + thickness + R"(}, {"medium": "fat"}])";
+    return mean_red(layers, "skin", {"settings.method=volume_diffusion", "settings.samples=2000"}, folder);
+  };
+  const double textured = returned(R"({"texture": "depth.exr", "scale": 3})");
+  EXPECT_NEAR(textured / returned("3"), 1, 1e-3);
+  EXPECT_GT(std::abs(textured / returned("1") - 1), .02);
 }
 
 }  // namespace
