@@ -87,7 +87,7 @@ bool uses_a_profile(const Scene& scene, const World& world, const BodyPlan& grou
   }
 }
 
-/// Layers are walked: the equivalent medium of dark skin is up to 12 % off in reflectance and 45 % in shape.
+/// Layers are walked: the equivalent medium is inaccurate where one absorbs much (`opaline profile` prints by how much).
 BodyModel model_of(const Scene& scene, const World& world, const BodyPlan& group, const BodyShape& shape,
                    std::size_t bodies) {
   const Medium& medium = scene.media[group.medium];

@@ -10,7 +10,7 @@ namespace opaline {
 std::shared_ptr<const RoughnessRange> shared_roughness(double eta, float anisotropy,
                                                        std::optional<float> roughness) {
   using Key = std::tuple<double, float, float>;
-  constexpr std::size_t kMost = 16;  // up to 50 kB each
+  constexpr std::size_t kMost = 64;
   static std::mutex mutex;
   static std::map<Key, std::shared_ptr<const RoughnessRange>> known;
   const std::lock_guard lock(mutex);

@@ -30,8 +30,8 @@ std::array<HomogeneousMedium, 3> layers_below(const Vec3d& position, double widt
 }
 
 // Claim: a position has the medium of its layer, however large the cubes; the densest medium is the densest layer. Source:
-// definition. Tolerance: 1e-3, but for positions at faces. Fails if: cubes hold the mean of their layers, which made the reference of
-// dark skin 29 to 55 % too bright.
+// definition. Tolerance: 1e-3, but for positions at faces. Fails if: cubes hold the mean of their layers, so that
+// dark skin is too bright.
 TEST(MediumVoxels, LayersThinnerThanCubes) {
   std::vector<std::array<HomogeneousMedium, 3>> layers(3);
   for (std::size_t c = 0; c < 3; ++c) {
