@@ -97,6 +97,9 @@ inline Rgb at_wavelengths(const Texture& texture, const Rgb& color) {
 struct Grain {
   double anisotropy = 0;  ///< [0, 1], specular_roughness_anisotropy of OpenPBR: 0 is isotropic
   double rotation = 0;    ///< rotation of the tangent about the normal, counterclockwise, degrees
+  std::optional<Texture> anisotropy_texture{};
+  /// Cosine and sine of twice a further rotation.
+  std::optional<Texture> cosine_texture{}, sine_texture{};
   friend bool operator==(const Grain&, const Grain&) = default;
 };
 
@@ -184,6 +187,13 @@ struct Medium {
 enum class SurfacePart { color, boundary, normals };
 
 template <class Visit>
+void for_each_textured(const Grain& grain, const Visit& visit) {
+  visit(grain.anisotropy, grain.anisotropy_texture, SurfacePart::boundary);
+  visit(grain.rotation, grain.cosine_texture, SurfacePart::boundary);
+  visit(grain.rotation, grain.sine_texture, SurfacePart::boundary);
+}
+
+template <class Visit>
 void for_each_textured(const Fuzz& fuzz, const Visit& visit) {
   if (!(fuzz.weight > 0)) return;
   visit(fuzz.weight, fuzz.weight_texture, SurfacePart::color);
@@ -196,6 +206,7 @@ template <class Visit>
 void for_each_textured(const Medium& medium, const Visit& visit) {
   visit(medium.tint, medium.tint_texture, SurfacePart::color);
   visit(medium.specular_roughness, medium.roughness_texture, SurfacePart::boundary);
+  for_each_textured(medium.grain, visit);
   visit(1.0, medium.radius_texture, SurfacePart::color);
   visit(medium.subsurface_weight, medium.weight_texture, SurfacePart::color);
   visit(medium.base_color, medium.base_texture, SurfacePart::color);
@@ -323,6 +334,7 @@ void for_each_textured(const Shape& shape, const Visit& visit) {
   if (!shape.gloss) return;
   visit(shape.gloss->metalness, shape.gloss->metalness_texture, SurfacePart::color);
   visit(shape.gloss->roughness, shape.gloss->roughness_texture, SurfacePart::boundary);
+  for_each_textured(shape.gloss->grain, visit);
 }
 
 // ---- lights ---------------------------------------------------------------------------------------------

@@ -265,8 +265,15 @@ class MaterialTranslator {
     const double anisotropy = 1 - across / along, rotation = extension.number("anisotropyRotation", 0);
     const double mean = std::sqrt(std::sqrt((along * along + across * across) / 2));
     const double degrees = std::remainder(rotation * 180 / std::numbers::pi, 360);
-    keys["specular_anisotropy"] = anisotropy;
-    if (degrees != 0) keys["specular_rotation"] = degrees;
+    const std::optional<Json> map = texture(extension.record("anisotropyTexture"), "anisotropyTexture");
+    carried_.insert("anisotropyTexture");
+    keys["specular_anisotropy"] = times(channel(map, "b"), anisotropy, 1.0);
+    if (map) {
+      keys["specular_rotation"] = channel(map, "rg").value();
+      if (degrees != 0) not_carried("anisotropyRotation beside anisotropyTexture");
+    } else if (degrees != 0) {
+      keys["specular_rotation"] = degrees;
+    }
     translated(
         fmt::format("anisotropyStrength {:.3g}, anisotropyRotation {:.3g}, roughnessFactor {:.3g} -> "
                     "specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}; {}",

@@ -146,15 +146,18 @@ class SurfaceReader {
     roughness_map_ = connected_texture("specular_roughness", false);
     const double roughness =
         roughness_map_ ? 1 : number("specular_roughness", model_.default_roughness, 0, 1);
-    const double anisotropy = number(model_.specular_anisotropy, 0, 0, 1),
-                 rotation = model_.has_rotation ? number("specular_rotation", 0, 0, 1) * 360 : 0;
+    const std::optional<Json> map = connected_texture(model_.specular_anisotropy, false),
+                              angles = model_.has_rotation ? connected_texture("specular_rotation", false)
+                                                           : std::nullopt;
+    const double anisotropy = map ? 1 : number(model_.specular_anisotropy, 0, 0, 1),
+                 rotation = model_.has_rotation && !angles ? number("specular_rotation", 0, 0, 1) * 360 : 0;
     if (!(anisotropy > 0)) return roughness;
     const double ratio = 1 - std::min(anisotropy, kMostSpecularAnisotropy);
-    const double scale = model_.has_rotation ? std::pow((ratio + 1 / ratio) / 2, .25) : 1;
+    const double scale = model_.has_rotation && !map ? std::pow((ratio + 1 / ratio) / 2, .25) : 1;
     const double mean = std::min(roughness * scale, 1.);
     if (roughness_map_ && scale != 1) (*roughness_map_)["scale"] = scale;
-    keys["specular_anisotropy"] = 1 - ratio;
-    keys["specular_rotation"] = rotation;
+    keys["specular_anisotropy"] = map.value_or(1 - ratio);
+    keys["specular_rotation"] = angles.value_or(rotation);
     scene_.translated.push_back(fmt::format(
         "{}: {} {:.3g} -> specular_anisotropy {:.3g}, specular_rotation {:.4g}, specular_roughness {:.3g}",
         label_, model_.specular_anisotropy, anisotropy, 1 - ratio, rotation, mean));

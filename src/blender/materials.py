@@ -184,10 +184,11 @@ class MaterialReader:
             "specular_ior": min(max(reader.number(socket("IOR"), 1.5), 0.1), 10.0),
             "specular_weight": min(2 * reader.number(socket("Specular IOR Level"), 0.5), 1.0),
         }
-        anisotropy = reader.number(socket("Anisotropic"))
-        if anisotropy > 0:
-            keys["specular_anisotropy"] = min(anisotropy, 1.0)
-            keys["specular_rotation"] = 360 * reader.number(socket("Anisotropic Rotation"))
+        anisotropy = unit_clamp(reader.value(socket("Anisotropic")))
+        if anisotropy != 0:
+            rotation = reader.value(socket("Anisotropic Rotation"))
+            keys["specular_anisotropy"] = anisotropy
+            keys["specular_rotation"] = rotation if isinstance(rotation, dict) else 360 * rotation
         sheen = reader.number(socket("Sheen Weight"))
         if sheen > 0:
             keys["fuzz_weight"] = min(sheen, 1.0)

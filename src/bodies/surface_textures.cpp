@@ -28,6 +28,10 @@ std::array<float, 4> looked_up(const Texture& texture, const SurfaceTextures::Pl
   return texture.source->image()->at(texture_place(texture, *place.uv, place.footprint, place.on_whole_face));
 }
 
+float value_at(const Texture& texture, const SurfaceTextures::Place& place) {
+  return looked_up(texture, place)[texture.channel] * float(texture.scale.x);
+}
+
 // 8-bit images have no exact half: the values 127 and 128 on both sides of it count as one half.
 constexpr float kRoundingOfHalf = 1.01f / 255;
 
@@ -302,12 +306,12 @@ RgbF color_at(const Texture& texture, const SurfaceTextures::Place& place) {
 
 float factor_at(const Texture* texture, const SurfaceTextures::Place& place) {
   if (texture == nullptr) return 1;
-  return std::max(0.f, looked_up(*texture, place)[texture->channel] * float(texture->scale.x));
+  return std::max(0.f, value_at(*texture, place));
 }
 
 std::optional<float> number_at(const Texture* texture, const SurfaceTextures::Place& place) {
   if (texture == nullptr) return {};
-  return std::clamp(looked_up(*texture, place)[texture->channel] * float(texture->scale.x), 0.0f, 1.0f);
+  return std::clamp(value_at(*texture, place), 0.0f, 1.0f);
 }
 
 std::optional<RgbF> color_at(const Texture* texture, const SurfaceTextures::Place& place) {
@@ -315,13 +319,23 @@ std::optional<RgbF> color_at(const Texture* texture, const SurfaceTextures::Plac
   return color_at(*texture, place);
 }
 
-Vec3f SurfaceTextures::tangent(const Place& place, const SurfacePoint& point) const {
+LocalGrain SurfaceTextures::grain(const Place& place, const SurfacePoint& point) const {
   const Grain* const grain = of_mesh_[place.mesh].grain;
   if (grain == nullptr) return {};
   TangentFrame frame = frame_of(place, point);
   if (frame.tangent == Vec3f{}) frame = level_frame(point.normal);
-  const double angle = grain->rotation * std::numbers::pi / 180;
-  return frame.tangent * float(std::cos(angle)) + frame.bitangent * float(std::sin(angle));
+  LocalGrain here{
+      .anisotropy =
+          number_at(pointer_to(grain->anisotropy_texture), place).value_or(float(grain->anisotropy))};
+  double angle = grain->rotation * std::numbers::pi / 180;
+  if (grain->cosine_texture) {
+    const float cosine = value_at(*grain->cosine_texture, place),
+                sine = value_at(*grain->sine_texture, place);
+    here.alignment = std::min(1.f, std::hypot(cosine, sine));
+    angle += double(std::atan2(sine, cosine) / 2);
+  }
+  here.tangent = frame.tangent * float(std::cos(angle)) + frame.bitangent * float(std::sin(angle));
+  return here;
 }
 
 float SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {

@@ -31,6 +31,13 @@ struct MediumFactors {
   RgbF color{1, 1, 1}, radius{1, 1, 1};
 };
 
+/// Grain at a point, over a footprint.
+struct LocalGrain {
+  Vec3f tangent{};  ///< unit, across the shading normal, the direction of largest roughness; 0: isotropic
+  float anisotropy = 0;  ///< facet_alphas
+  float alignment = 1;   ///< filtered_alphas
+};
+
 class SurfaceTextures {
  public:
   /// Both must outlive the object.
@@ -62,9 +69,7 @@ class SurfaceTextures {
   /// Fraction of the light diffusely reflected at the surface of a body, instead of entering.
   RgbF reflected(const Place& place) const;
   MediumFactors medium(const Place& place) const;
-  /// Unit tangent perpendicular to the shading normal, the direction of largest roughness of an anisotropic
-  /// boundary; 0 for isotropic ones.
-  Vec3f tangent(const Place& place, const SurfacePoint& point) const;
+  LocalGrain grain(const Place& place, const SurfacePoint& point) const;
   /// Bends the point's shading normal by the normal map and then the bump map, if present. Returns the variance of
   /// the normal map's slopes within the footprint, along each axis.
   float bend(const Place& place, SurfacePoint& point) const;

@@ -257,7 +257,7 @@ bool LinearInput::check_range(const void* values, std::size_t count, OIIO::TypeD
 
 bool LinearInput::change_colors(std::size_t pixels) {
   const auto channels = std::size_t(m_spec.nchannels), count = pixels * channels;
-  if (colors_.is_premultiplied || colors_.to_rec709) {
+  if (colors_.need_texels()) {
     change_each(pixels);
     return check_range(values_.data(), count, OIIO::TypeFloat);
   }
@@ -312,7 +312,7 @@ bool LinearInput::convert_top_rows(int y_begin, int y_end) {
                     count = pixels * std::size_t(top_.nchannels);
   const unsigned char* const texels = &sizes_[0].texels[std::size_t(y_begin) * row * native_.size()];
   values_.resize(count);
-  if (native_ == OIIO::TypeUInt8 && colors_.is_srgb && !colors_.is_premultiplied && !colors_.to_rec709) {
+  if (native_ == OIIO::TypeUInt8 && colors_.is_srgb && !colors_.need_texels()) {
     const std::array<float, 256>& table = linear_bytes();
     for (std::size_t i = 0; i < count; ++i) values_[i] = table[texels[i]];
     if (const int alpha = top_.alpha_channel; alpha >= 0)

@@ -2,6 +2,8 @@
 #include "image/texel_colors.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "core/srgb.h"
 #include "opaline/error.h"
@@ -17,14 +19,25 @@ std::optional<ColorMatrix> matrix_to_rec709(const OIIO::ImageSpec& file, const s
   return matrix_to_rec709({pair(0), pair(2), pair(4), pair(6)}, path);
 }
 
+namespace {
+
+/// Cosine and sine of twice the angle of a direction by 2 c - 1; zeros: none.
+std::array<double, 2> axis_of(double red, double green) {
+  const double x = 2 * red - 1, y = 2 * green - 1, squares = x * x + y * y;
+  if (!(squares > 1e-4)) return {};
+  return {(x * x - y * y) / squares, 2 * x * y / squares};
+}
+
+}  // namespace
+
 TexelColors::TexelColors(const OIIO::ImageSpec& file, std::string_view format, const TexelLayout& layout,
                          TextureEncoding encoding, const std::string& path)
-    : is_srgb(encoding.space == ColorSpace::srgb) {
+    : is_srgb(encoding.space == ColorSpace::srgb), content(encoding.content) {
   const bool has_associated_alpha =
       layout.places[3] >= 0 && file.get_int_attribute("oiio:UnassociatedAlpha") == 0;
   // OpenImageIO multiplies a WebP's numbers by alpha, whatever it is asked for.
   is_premultiplied = has_associated_alpha && format == "webp";
-  if (encoding.content == TextureContent::data) return;
+  if (content != TextureContent::colors) return;
   is_premultiplied = is_premultiplied || (has_associated_alpha && (format == "exr" || format == "tiff"));
   const auto& [red, green, blue, alpha] = layout.places;
   if (std::min({red, green, blue}) >= 0 && red != green) to_rec709 = matrix_to_rec709(file, path);
@@ -41,6 +54,13 @@ void TexelColors::apply(Texel& texel) const {
     for (std::size_t c = 0; c < 3; ++c) texel[c] /= alpha;
   if (is_srgb)
     for (std::size_t c = 0; c < 3; ++c) texel[c] = srgb_to_linear(texel[c]);
+  if (content == TextureContent::directions) {
+    const auto [cosine, sine] = axis_of(red, green);
+    red = cosine, green = sine;
+  } else if (are_angles()) {
+    const double quarter = content == TextureContent::angle_sines ? .25 : 0;
+    for (std::size_t c = 0; c < 3; ++c) texel[c] = std::cos(2 * std::numbers::pi * (2 * texel[c] - quarter));
+  }
   if (!to_rec709) return;
   const bool is_above_zero = std::min({red, green, blue}) >= 0,
              is_below_one = std::max({red, green, blue}) <= 1;

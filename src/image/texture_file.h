@@ -24,8 +24,9 @@ struct TexturePlace {
 };
 
 /// Use of a texture's texels. Colours become linear Rec.709, by the file's primaries, without premultiplied
-/// alpha. Data are the file's numbers.
-enum class TextureContent { data, colors };
+/// alpha. Data are the file's numbers. Those of angles, 1 a full turn, become the cosine or sine of twice the angle, for
+/// means of axes; red and green of directions, x and y by 2 c - 1, become both.
+enum class TextureContent { data, colors, angle_cosines, angle_sines, directions };
 
 struct TextureEncoding {
   ColorSpace space = ColorSpace::linear;  ///< not automatic

@@ -29,7 +29,9 @@ inline constexpr const char
         "anisotropy of `specular_roughness`, as in OpenPBR: towards 1, highlights stretch along u, as on "
         "metal brushed across u",
     *kRotationMeaning =
-        "rotates u for `specular_anisotropy`, counter-clockwise; without UVs, u is horizontal, around y";
+        "rotates u for `specular_anisotropy`, counter-clockwise; without UVs, u is horizontal, around y. A "
+        "texture's texels from 0 to 1 are a full turn; with the channel `\"rg\"`, red and green are the x "
+        "and y of a direction, 0.5 for none, as in a normal map";
 
 /// Rows of fuzz, of media and of opaque shapes.
 std::vector<KeyInfo> fuzz_rows(std::string_view section);

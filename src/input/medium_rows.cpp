@@ -89,8 +89,8 @@ std::span<const MediumRow> medium_rows() {
       row("medium", "specular_weight", number, "", {0, 1}, "1",
           "factor of the specular reflectance at normal incidence, through a modified index of refraction, "
           "also for light from inside; at 0 all light enters"),
-      row("medium", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning),
-      row("medium", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning),
+      textured(row("medium", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning)),
+      textured(row("medium", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning)),
       fuzz[0],
       fuzz[1],
       fuzz[2],

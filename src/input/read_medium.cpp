@@ -136,8 +136,9 @@ double weighted_ior(double ior, double weight) {
 
 Grain read_grain(const ObjectReader& reader) {
   Grain grain;
-  if (const auto anisotropy = reader.find("specular_anisotropy")) grain.anisotropy = anisotropy->number();
-  if (const auto rotation = reader.find("specular_rotation")) grain.rotation = rotation->number();
+  if (const auto anisotropy = reader.find("specular_anisotropy"))
+    read_textured(*anisotropy, grain.anisotropy, grain.anisotropy_texture);
+  if (const auto rotation = reader.find("specular_rotation")) read_rotation(*rotation, grain);
   return grain;
 }
 

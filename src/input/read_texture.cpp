@@ -20,8 +20,21 @@ bool is_texture(const Value& value) {
   return value.node().kind == Node::Kind::object;
 }
 
-/// Channels of a texel used by a value.
-enum class TexturePart { color, triple, number };
+/// Channels of a texel used by a value. A direction has red and green.
+enum class TexturePart { color, triple, number, angle, direction };
+
+constexpr std::size_t kDirection = 4;  // choice of "channel"
+
+bool has_channel(TexturePart part) {
+  return part == TexturePart::number || part == TexturePart::angle;
+}
+
+TextureContent content_of(TexturePart part) {
+  return part == TexturePart::color       ? TextureContent::colors
+         : part == TexturePart::angle     ? TextureContent::angle_cosines
+         : part == TexturePart::direction ? TextureContent::directions
+                                          : TextureContent::data;
+}
 
 DetailBlend blend_of(const ObjectReader& reader) {
   const auto blend = reader.find("blend");
@@ -43,18 +56,18 @@ void check_channels(const Value& file, const std::optional<Value>& channel, cons
   constexpr std::array<char, 4> names{'r', 'g', 'b', 'a'};
   std::string missing, there;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    const bool is_taken = part == TexturePart::number ? c == texture.channel : c < 3;
+    const bool is_taken = part == TexturePart::direction ? c < 2
+                          : has_channel(part)            ? c == texture.channel
+                                                         : c < 3;
     const bool is_there = texture.source->has_channel(c);
     if (is_taken && !is_there && names[c] != 'a') missing += names[c];
     if (is_there) there += (there.empty() ? "" : ", ") + std::string(1, names[c]);
   }
   if (missing.empty()) return;
   const std::string expected = "a channel of the image: " + there;
-  if (part == TexturePart::number && channel)
-    channel->fail("is not in " + printable(texture.source->path()), expected);
+  if (channel) channel->fail("is not in " + printable(texture.source->path()), expected);
   file.fail("refers to an image without the channel " + missing.substr(0, 1),
-            part == TexturePart::number ? "\"channel\": " + expected
-                                        : "the channels R, G and B, or Y, or one alone");
+            has_channel(part) ? "\"channel\": " + expected : "the channels R, G and B, or Y, or one alone");
 }
 
 /// Colours become values at the document's wavelengths.
@@ -80,8 +93,7 @@ std::shared_ptr<const TextureSource> read_image(const ObjectReader& reader, cons
                                                 TexturePart part) {
   try {
     const std::string path = file.file_path();
-    return TextureFile::open(path, space_of(reader, path, part),
-                             part == TexturePart::color ? TextureContent::colors : TextureContent::data);
+    return TextureFile::open(path, space_of(reader, path, part), content_of(part));
   } catch (const Error& failure) {
     throw told_at(file.place(), failure);
   }
@@ -146,9 +158,12 @@ Texture read_texture(const Value& value, TexturePart part, bool is_detail) {
   if (const auto scale = reader.find("scale")) texture.scale = scale->number_or_triple();
   if (value.wavelengths() != nullptr) mix_channels(value, part, reader.find("detail").has_value(), texture);
   const std::optional<Value> channel = reader.find("channel");
-  if (channel && part != TexturePart::number)
-    value.fail(part == TexturePart::color ? "is a colour" : "requires three numbers", "no 'channel'");
-  if (channel) texture.channel = channel->choice();
+  if (channel && part != TexturePart::direction) {
+    if (!has_channel(part))
+      value.fail(part == TexturePart::color ? "is a colour" : "requires three numbers", "no 'channel'");
+    texture.channel = channel->choice();
+    if (texture.channel == kDirection) channel->fail("is a direction, here of no use", "r, g, b or a");
+  }
   if (channel && !is_image && !texture.source->has_channel(texture.channel))
     channel->fail("is not in 'noise'", "r, g or b");
   check_channels(origin, channel, texture, part);
@@ -211,6 +226,29 @@ Texture read_normal_map(const Value& value) {
   if (is_solid(map) || std::ranges::any_of(map.details, is_solid))
     value.fail("needs images mapped by UVs", "a 'bump_map', or images without 'triplanar'");
   return map;
+}
+
+void read_rotation(const Value& value, Grain& grain) {
+  if (!is_texture(value)) {
+    grain.rotation = value.number();
+    return;
+  }
+  const ObjectReader reader(value, "texture");
+  const auto channel = reader.find("channel");
+  const bool is_direction = channel && channel->choice() == kDirection;
+  grain.cosine_texture = read_texture(value, is_direction ? TexturePart::direction : TexturePart::angle);
+  Texture& cosine = *grain.cosine_texture;
+  if (is_solid(cosine)) value.fail("needs an image mapped by UVs", "an image without 'triplanar'");
+  if (const auto scale = reader.find("scale"))
+    scale->fail_key("has no effect on angles", "texels from 0 to 1, a full turn");
+  if (!is_direction && cosine.channel == 3) channel->fail("is no channel of angles", "r, g or b");
+  Texture& sine = grain.sine_texture.emplace(cosine);
+  if (is_direction)
+    sine.channel = 1;
+  else
+    sine.source =
+        TextureFile::open(cosine.source->path(), space_of(reader, cosine.source->path(), TexturePart::angle),
+                          TextureContent::angle_sines);
 }
 
 Texture read_displacement(const Value& value, double mm_per_unit) {

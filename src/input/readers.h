@@ -32,6 +32,8 @@ void read_textured(const Value& value, Vec3d& triple, std::optional<Texture>& te
 /// Returns the mean of a texture's colours, and divides its texels by it.
 Rgb take_mean(Texture& texture);
 Texture read_normal_map(const Value& value);
+/// Degrees, or images of angles or directions.
+void read_rotation(const Value& value, Grain& grain);
 /// Height map with its scale in mm; none: flat.
 std::optional<Texture> read_bump_map(const Value& value, double mm_per_unit);
 

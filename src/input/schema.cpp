@@ -20,7 +20,7 @@
 namespace opaline {
 namespace {
 
-constexpr std::array<std::string_view, 4> kTextureChannels{"r", "g", "b", "a"};
+constexpr std::array<std::string_view, 5> kTextureChannels{"r", "g", "b", "a", "rg"};
 
 std::string_view mesh_file_meaning() {
   static const std::string text = [] {
@@ -160,8 +160,8 @@ std::vector<KeyInfo> shape_rows() {
       row("shape", "specular_weight", number, "", {0, 1}, "1",
           "glossy opaque shapes: factor of the dielectric's specular reflectance at normal incidence; metals "
           "ignore it"),
-      row("shape", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning),
-      row("shape", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning),
+      textured(row("shape", "specular_anisotropy", number, "", kUnitInterval, "0", kAnisotropyMeaning)),
+      textured(row("shape", "specular_rotation", number, "degrees", {-360, 360}, "0", kRotationMeaning)),
       fuzz[0],
       fuzz[1],
       fuzz[2],
@@ -276,7 +276,9 @@ std::vector<KeyInfo> texture_rows() {
           kColorSpaceNames),
       row("texture", "scale", number_or_triple, "", kNonNegative, "1", "factor of the values"),
       row("texture", "channel", choice, "", kFiniteNumber, "`\"r\"`",
-          "channel used for a number: `\"r\"`, `\"g\"`, `\"b\"` or `\"a\"`", kTextureChannels),
+          "channel used for a number: `\"r\"`, `\"g\"`, `\"b\"` or `\"a\"`; `\"rg\"`: the direction of "
+          "`specular_rotation`",
+          kTextureChannels),
       row("texture", "uv_scale", list, "", kFiniteNumber, "[1, 1]",
           "repeats to the right and down, from the upper left corner"),
       row("texture", "uv_rotation", number, "degrees", kFiniteNumber, "0",

@@ -20,8 +20,7 @@
 
 namespace opaline {
 
-/// Roughness with the slopes of facets that a normal map averages: alpha^2 + 2 variance, alpha = roughness^2.
-/// from  the best GGX for Gaussian slopes is within 5 % of it
+/// As filtered_alphas, for isotropic facets.
 inline float filtered_roughness(float roughness, float slope_variance) {
   if (!(slope_variance > 0)) return roughness;
   const float alpha = roughness * roughness;
@@ -38,7 +37,8 @@ struct Appearance {
   float metalness = 0;                 ///< metalness of an opaque one
   /// Range of a textured or anisotropic roughness.
   std::shared_ptr<const RoughnessRange> roughnesses = {};
-  float roughness = 0;  ///< where it is no texture
+  std::shared_ptr<const AnisotropyRange> anisotropies = {};  ///< for a varying anisotropy
+  float roughness = 0;                                       ///< where it is no texture
   const Texture *roughness_texture = nullptr, *metalness_texture = nullptr;
   /// Angular distribution of light traced inside; none: given by the boundary.
   std::shared_ptr<const AngularExit> exit = {};
@@ -53,12 +53,18 @@ struct Appearance {
     here.fuzz_color = color_at(fuzz_color_texture, place);
     if (boundary.is_textured()) here.boundary = boundary.at(point);
   }
+  bool is_rough() const { return rough || roughnesses || anisotropies; }
   /// Appearance at a point with known textures.
   Appearance at(const HitTextures& textures) const {
     Appearance here = *this;
     here.albedo = albedo * textures.tint.entering * textures.tint.leaving + textures.reflected;
-    if (roughnesses) {
-      const float own = textures.roughness.value_or(roughness);
+    const float own = textures.roughness.value_or(roughness);
+    if (anisotropies) {
+      const FacetAlphas alphas =
+          filtered_alphas(facet_alphas(std::max(own, RoughnessRange::kLeast), textures.grain.anisotropy),
+                          textures.grain.alignment, textures.slope_variance);
+      here.rough = anisotropies->at(alphas, textures.tangent_share);
+    } else if (roughnesses) {
       here.rough = roughnesses->at(filtered_roughness(own, textures.slope_variance), textures.tangent_share);
     }
     if (textures.metalness) here.metalness = *textures.metalness;
@@ -133,7 +139,10 @@ inline void roughen(Appearance& appearance, double roughness, const std::optiona
   const float anisotropy = float(grain.anisotropy);
   appearance.roughness = float(roughness);
   appearance.roughness_texture = pointer_to(texture);
-  if (texture || (has_normals && roughness > 0))
+  const bool is_rough = texture || roughness > 0, is_anisotropic = anisotropy > 0 || grain.anisotropy_texture;
+  if (is_rough && is_anisotropic && (grain.anisotropy_texture || grain.cosine_texture || has_normals))
+    appearance.anisotropies = shared_anisotropies(eta);
+  else if (texture || (has_normals && roughness > 0))
     appearance.roughnesses = shared_roughness(eta, anisotropy);
   else if (roughness > 0 && anisotropy > 0)
     appearance.roughnesses = shared_roughness(eta, anisotropy, appearance.roughness);

@@ -311,10 +311,10 @@ void Shader::add_textures(const RayBatch& batch, std::size_t ray, bool from_behi
   appearances_[hit.mesh].look_up(place, point, here);
   here.slope_variance = slope_variance;
   here.is_bent = is_bent;
-  here.tangent = textures_.tangent(place, point);
-  if (here.tangent != Vec3f{}) {
-    const float along = dot(traced.direction, here.tangent),
-                across = dot(traced.direction, cross(point.normal, here.tangent));
+  here.grain = textures_.grain(place, point);
+  if (here.grain.tangent != Vec3f{}) {
+    const float along = dot(traced.direction, here.grain.tangent),
+                across = dot(traced.direction, cross(point.normal, here.grain.tangent));
     const float both = along * along + across * across;
     if (both > 0) here.tangent_share = along * along / both;
   }

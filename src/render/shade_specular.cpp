@@ -112,7 +112,7 @@ void Shader::add_specular(const SurfaceHits& hits, const RayBatch& batch, const 
   SurfaceHits smooth, rough;
   for (std::size_t i = 0; i < hits.rays.size(); ++i) {
     const Appearance& appearance = appearances_[hits.hits[i].mesh];
-    add_hit(hits, i, appearance.rough || appearance.roughnesses ? rough : smooth);
+    add_hit(hits, i, appearance.is_rough() ? rough : smooth);
   }
   if (!smooth.rays.empty() && mirrors_surfaces()) add_mirrored(smooth, batch, pass);
   if (!rough.rays.empty()) add_glossy(rough, batch, pass, held);
@@ -231,7 +231,7 @@ struct Shader::GlossyHits {
       // Directions behind a reflection are independent: the first reflection uses the pixel's sequence.
       keys.push_back(rays.mirrors > 0 ? hash_bits(seed, hits.keys[i])
                                       : key_in_pixel(hits.keys[i], std::uint64_t(spp)));
-      frames.emplace_back(hits.points[i], hits.textures.empty() ? Vec3f{} : hits.textures[i].tangent,
+      frames.emplace_back(hits.points[i], hits.textures.empty() ? Vec3f{} : hits.textures[i].grain.tangent,
                           -normalized(batch.rays[hits.rays[i]].ray.direction));
       if (!hits.textures.empty()) textured.push_back(shader.appearance_of(hits, i));
       appearances.push_back(hits.textures.empty() ? &shader.appearances_[hits.hits[i].mesh]

@@ -73,7 +73,8 @@ bool needs_uvs(const Scene& scene, const Shape& shape) {
 
 const Grain* grain_of(const Scene& scene, const Shape& shape) {
   const auto found = [](const Grain& grain, double roughness, const std::optional<Texture>& texture) {
-    return grain.anisotropy > 0 && (roughness > 0 || texture) ? &grain : nullptr;
+    return (grain.anisotropy > 0 || grain.anisotropy_texture) && (roughness > 0 || texture) ? &grain
+                                                                                            : nullptr;
   };
   if (shape.medium) {
     const Medium& medium = scene.media[*shape.medium];

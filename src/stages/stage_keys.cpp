@@ -136,9 +136,8 @@ StageKey surfaces_key(const PrecomputeInput& input, std::span<const MeshKeys> me
       const Medium& medium = input.scene.media[*shape.medium];
       for_each_textured(medium, add_value);
       add_fuzz(key.add(medium.texture_mix).add(medium.eta), medium.fuzz);
-      key.add(medium.grain.anisotropy).add(medium.grain.rotation);
     } else if (const auto& gloss = shape.gloss) {
-      key.add(gloss->eta).add(gloss->grain.anisotropy).add(gloss->grain.rotation);
+      key.add(gloss->eta);
     }
     add_fuzz(key, shape.fuzz);
     for (const Texture* texture : textures_of(input.scene, shape)) add_to_key(key, *texture);
@@ -203,13 +202,11 @@ StageKey view_coats_key(const Scene& scene) {
   };
   for (const Shape& shape : scene.shapes) {
     for_each_textured(shape, add_part);
-    if (shape.gloss) key.add(shape.gloss->grain.anisotropy).add(shape.gloss->grain.rotation);
     add_fuzz(key, shape.fuzz);
     if (!shape.medium) continue;
     const Medium& medium = scene.media[*shape.medium];
     add_fuzz(key, medium.fuzz);
     for_each_textured(medium, add_part);
-    key.add(medium.grain.anisotropy).add(medium.grain.rotation);
   }
   return key.key();
 }

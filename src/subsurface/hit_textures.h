@@ -17,8 +17,8 @@ struct HitTextures {
   std::optional<OuterBoundary> boundary{};        ///< with textures of fuzz
   float slope_variance = 0;                       ///< SurfaceTextures::bend
   bool is_bent = false;                           ///< maps have turned the shading normal
-  Vec3f tangent{};                                ///< SurfaceTextures::tangent
-  float tangent_share = 0;                        ///< cos^2 of the view direction's azimuth from the tangent
+  LocalGrain grain{};
+  float tangent_share = 0;  ///< cos^2 of the view direction's azimuth from the tangent
 };
 
 }  // namespace opaline

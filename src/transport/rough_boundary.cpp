@@ -40,6 +40,13 @@ FacetAlphas facet_alphas(float roughness, float anisotropy) {
   return {along, std::max(ratio * along, std::min(kLeastAcross, along))};
 }
 
+FacetAlphas filtered_alphas(const FacetAlphas& facets, float alignment, float slope_variance) {
+  const float along2 = facets.along * facets.along, across2 = facets.across * facets.across,
+              mean = (along2 + across2) / 2 + 2 * slope_variance,
+              difference = (along2 - across2) / 2 * alignment;
+  return {std::sqrt(std::min(1.f, mean + difference)), std::sqrt(std::min(1.f, mean - difference))};
+}
+
 RoughBoundary::RoughBoundary(double roughness, double eta)
     : RoughBoundary({std::max(float(roughness * roughness), kLeastAlpha),
                      std::max(float(roughness * roughness), kLeastAlpha)},
@@ -133,6 +140,13 @@ float RoughBoundary::value(const Vec3f& view, const Vec3f& light) const {
   return fresnel_reflectance(std::min(dot(view, normal), 1.0f), eta_) * both * facets(normal) / (4 * view.z);
 }
 
+void RoughBoundary::mix(const RoughBoundary& other, float share) {
+  for (std::size_t c = 0; c < kCosines; ++c) {
+    reflectances_[c] = reflectances_[c] * (1 - share) + other.reflectances_[c] * share;
+    once_[c] = once_[c] * (1 - share) + other.once_[c] * share;
+  }
+}
+
 RoughnessRange::RoughnessRange(double eta, float anisotropy, float least, float most, std::size_t steps)
     : anisotropy_(anisotropy),
       least_(least),
@@ -156,13 +170,6 @@ RoughBoundary RoughnessRange::at(float roughness, float tangent_share) const {
   const float bounded = std::clamp(roughness, least_, most_);
   const float place = steps_ > 1 ? (bounded - least_) / (most_ - least_) * float(steps_ - 1) : 0;
   const std::size_t i = steps_ > 1 ? std::min(std::size_t(place), steps_ - 2) : 0;
-  const auto mix = [](RoughBoundary& boundary, const RoughBoundary& next, float share) {
-    const auto mix_tables = [&](RoughBoundary::Table& table, const RoughBoundary::Table& other) {
-      for (std::size_t c = 0; c < table.size(); ++c) table[c] = table[c] * (1 - share) + other[c] * share;
-    };
-    mix_tables(boundary.reflectances_, next.reflectances_);
-    mix_tables(boundary.once_, next.once_);
-  };
   const FacetAlphas alphas = facet_alphas(bounded, anisotropy_);
   const auto of_step = [&](std::size_t step) {
     if (sides_ == 1) return boundaries_[step];
@@ -170,12 +177,28 @@ RoughBoundary RoughnessRange::at(float roughness, float tangent_share) const {
     const float side = (seen_alpha(alphas, tangent_share) - alphas.across) / spread * float(sides_ - 1);
     const std::size_t k = std::min(std::size_t(std::max(side, 0.0f)), sides_ - 2);
     RoughBoundary boundary = boundaries_[step * sides_ + k];
-    mix(boundary, boundaries_[step * sides_ + k + 1], side - float(k));
+    boundary.mix(boundaries_[step * sides_ + k + 1], side - float(k));
     return boundary;
   };
   RoughBoundary boundary = of_step(i);
   boundary.alphas_ = alphas;
-  if (steps_ > 1) mix(boundary, of_step(i + 1), place - float(i));
+  if (steps_ > 1) boundary.mix(of_step(i + 1), place - float(i));
+  return boundary;
+}
+
+AnisotropyRange::AnisotropyRange(double eta) {
+  for (const float anisotropy : kSteps) ranges_.emplace_back(eta, anisotropy);
+}
+
+RoughBoundary AnisotropyRange::at(const FacetAlphas& alphas, float tangent_share) const {
+  const float mean2 = (alphas.along * alphas.along + alphas.across * alphas.across) / 2,
+              roughness = std::sqrt(std::sqrt(mean2)), anisotropy = 1 - alphas.across / alphas.along;
+  std::size_t step = 0;
+  while (step + 2 < kSteps.size() && anisotropy >= kSteps[step + 1]) ++step;
+  RoughBoundary boundary = ranges_[step].at(roughness, tangent_share);
+  boundary.mix(ranges_[step + 1].at(roughness, tangent_share),
+               (anisotropy - kSteps[step]) / (kSteps[step + 1] - kSteps[step]));
+  boundary.alphas_ = alphas;
   return boundary;
 }
 

@@ -20,6 +20,13 @@ struct FacetAlphas {
 /// from  OpenPBR Surface 1.1, specular_roughness_anisotropy
 FacetAlphas facet_alphas(float roughness, float anisotropy = 0);
 
+/// The mean of facets within a pixel: the covariances of their slopes are averaged as 2x2 matrices, along the mean
+/// tangent.
+/// in    alignment: [0, 1], length of the mean of (cos 2a, sin 2a), of the angles a of tangents; slope_variance: of a
+///       normal map's slopes along each axis, added twice to alpha^2
+/// from  the best GGX for Gaussian slopes is within 5 % of it
+FacetAlphas filtered_alphas(const FacetAlphas& facets, float alignment, float slope_variance);
+
 /// Directions are local, unit, x along the tangent, z along the normal, away from the surface. Light
 /// reflected into the surface is transmitted, an approximation of multiple reflection at a dielectric.
 class RoughBoundary {
@@ -51,6 +58,7 @@ class RoughBoundary {
 
  private:
   friend class RoughnessRange;
+  friend class AnisotropyRange;
   bool is_isotropic() const { return alphas_.along == alphas_.across; }
   float smith(const Vec3f& direction) const;  ///< visible fraction of facets, G1
   float facets(const Vec3f& normal) const;    ///< density of normals, D
@@ -60,12 +68,15 @@ class RoughBoundary {
   float eta_;
   using Table = std::array<float, kCosines>;
   static float value_of(const Table& table, float cosine);
+  /// Interpolates the tables.
+  void mix(const RoughBoundary& other, float share);
   Table reflectances_{}, once_{};
 };
 
 /// Boundaries of one index for all azimuths, interpolated between tabulated ones.
 class RoughnessRange {
  public:
+  static constexpr float kLeast = .04f;  ///< least roughness of a texture
   /// Roughness range of any roughness.
   explicit RoughnessRange(double eta, float anisotropy = 0)
       : RoughnessRange(eta, anisotropy, kLeast, 1, 17) {}
@@ -77,12 +88,23 @@ class RoughnessRange {
   RoughBoundary at(float roughness, float tangent_share = 0) const;
 
  private:
-  static constexpr float kLeast = .04f;
   RoughnessRange(double eta, float anisotropy, float least, float most, std::size_t steps);
 
   float anisotropy_, least_, most_;
   std::size_t steps_, sides_;  // steps of roughness, and of azimuth, uniform in the projected alpha
   std::vector<RoughBoundary> boundaries_;  // all azimuths of each roughness
+};
+
+/// Boundaries of one index, interpolated between tabulated anisotropies; errors of reflectances: .0024 at 95 %, at most
+/// .018.
+class AnisotropyRange {
+ public:
+  explicit AnisotropyRange(double eta);
+  RoughBoundary at(const FacetAlphas& alphas, float tangent_share) const;
+
+ private:
+  static constexpr std::array<float, 4> kSteps{0, .5f, .85f, 1};
+  std::vector<RoughnessRange> ranges_;
 };
 
 }  // namespace opaline

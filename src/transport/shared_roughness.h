@@ -13,5 +13,6 @@ namespace opaline {
 /// in    roughness: none: a range for any
 std::shared_ptr<const RoughnessRange> shared_roughness(double eta, float anisotropy,
                                                        std::optional<float> roughness = {});
+std::shared_ptr<const AnisotropyRange> shared_anisotropies(double eta);
 
 }  // namespace opaline

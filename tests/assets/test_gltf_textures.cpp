@@ -52,6 +52,23 @@ constexpr const char* kHalfClear =
     "qH1jAAAAFElEQVR42mM4kWL0H4oZQJgBXQAAEfsO7agUvlMAAA"
     "AASUVORK5CYII=";
 
+// Claim: a texture of anisotropy has its direction in red and green and its strength in blue; a rotation beside it is
+// reported. Source: KHR_materials_anisotropy. Fails if: a channel is another, or the rotation is lost silently.
+TEST(GltfTextures, AnisotropyHasDirections) {
+  const Json anisotropy = {
+      {"anisotropyStrength", 1}, {"anisotropyRotation", 1}, {"anisotropyTexture", {{"index", 0}}}};
+  const Asset asset =
+      textured_triangle({{"extensions", {{"KHR_materials_anisotropy", anisotropy}}}}, {{"uri", kHalfClear}});
+  const ImportedAsset import = imported(asset);
+  EXPECT_EQ(import.not_carried.size(), 1u);
+  EXPECT_TRUE(has(import.not_carried, "anisotropyRotation beside anisotropyTexture"));
+  const Grain grain = scene_of(asset.gltf()).shapes.at(0).gloss.value().grain;
+  ASSERT_TRUE(grain.cosine_texture && grain.sine_texture);
+  EXPECT_EQ(grain.cosine_texture->channel, 0u);
+  EXPECT_EQ(grain.sine_texture->channel, 1u);
+  EXPECT_EQ(grain.anisotropy_texture.value().channel, 2u);
+}
+
 // Claim: EXT_texture_webp's image is used, from within the asset. The bytes are `cwebp -lossless` of one texel of (200, 100, 50).
 TEST(GltfTextures, ImagesMayBeWebP) {
   const std::string webp = "data:image/webp;base64,UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQsiJXpv+BiOh/AAA=";

@@ -222,6 +222,17 @@ TEST(MaterialX, AnisotropyIsThatOfTheModel) {
   EXPECT_EQ(standard.grain.rotation, 90);
 }
 
+// Claim: images of anisotropy and rotation are its textures. Fails if they are lost.
+TEST(MaterialX, AnisotropyHasTextures) {
+  const MaterialFolder folder(R"(<materialx>
+    <image name="i" type="float"><input name="file" type="filename" value="i.png"/></image>
+    <standard_surface name="s"><input name="specular_anisotropy" nodename="i"/>
+      <input name="specular_rotation" nodename="i"/></standard_surface></materialx>)");
+  const Json shape = Json::parse(folder.import("tetrahedron.obj").text, nullptr, true, true)["shapes"][0];
+  EXPECT_TRUE(shape["specular_anisotropy"]["texture"].get<std::string>().ends_with("i.png"));
+  EXPECT_TRUE(shape["specular_rotation"]["texture"].get<std::string>().ends_with("i.png"));
+}
+
 // Claim: the fuzz of OpenPBR and the sheen of Standard Surface are fuzz, of opaque surfaces and media. Source: OpenPBR
 // 1.1; Standard Surface 1.0.1, its default roughness. Fails if: they are reported as lost, or a medium has none.
 TEST(MaterialX, FuzzAndSheenAreFuzz) {

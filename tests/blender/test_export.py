@@ -84,6 +84,21 @@ class Materials(unittest.TestCase):
         np.testing.assert_allclose([medium["specular_weight"], medium["specular_ior"], medium["specular_roughness"]],
                                    (1, 1.45, 0.3), rtol=1e-6)
 
+    def test_anisotropy(self):
+        # Claim: an image of anisotropy and one of its rotation are textures; a number of turns is degrees. Fails if they are lost.
+        scene = new_scene()
+        material = principled("brushed", specular=0.5, Anisotropic=0.5, Anisotropic_Rotation=0.25)
+        add_sphere(material)
+        keys = exported(scene)[0]["shapes"][0]
+        self.assertEqual((keys["specular_anisotropy"], keys["specular_rotation"]), (0.5, 90))
+        for name in ("Anisotropic", "Anisotropic Rotation"):
+            image = new_image(name, 4, 4, lambda u, v: (u, u, u))
+            self.linked(material, "ShaderNodeTexImage", "Color", name, image=image)
+        keys, warnings = exported(scene)
+        self.assertEqual(warnings, [])
+        for name in ("specular_anisotropy", "specular_rotation"):
+            self.assertIn("texture", keys["shapes"][0][name])
+
     def test_measured_medium(self):
         # Claim: a measured medium replaces the nodes. Fails if the panel is ignored.
         scene = new_scene()

@@ -120,6 +120,11 @@ TEST(SceneTextures, AreRefusedWhereTheyStand) {
   expect(shape(R"("reflectance": {"texture": "two.png", "chanel": "g"})"), {"unknown key 'chanel'"});
   expect(shape(R"("reflectance": {"texture": "two.png", "channel": "g"})"), {"is a colour"});
   expect(shape(R"("normal_map": {"texture": "two.png", "channel": "g"})"), {"three numbers"});
+  const std::string rotation = R"("specular_roughness": 0.5, "specular_rotation": {"texture": "two.png", )";
+  expect(shape(rotation + R"("scale": 2})"), {"scale", "no effect on angles"});
+  expect(shape(rotation + R"("channel": "a"})"), {"channel", "r, g or b"});
+  expect(shape(rotation + R"("triplanar": 1})"), {"specular_rotation", "UVs"});
+  expect(shape(R"("specular_roughness": {"texture": "two.png", "channel": "rg"})"), {"channel", "direction"});
   expect(shape(R"("reflectance": {"texture": "two.png", "uv_scale": [1]})"), {"uv_scale", "2 numbers"});
   expect(shape(R"("reflectance": {"scale": 1})"), {"texture"});
   expect(shape(R"("reflectance": {"texture": "even.png", "scale": 9})"), {"reflectance", "out of range"});
