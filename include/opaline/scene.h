@@ -497,11 +497,11 @@ struct Settings {
   friend bool operator==(const Settings&, const Settings&) = default;
 };
 
-/// The camera and the places of the shapes when the shutter opens or closes.
-struct ShutterEnd {
+/// The camera and the places of the shapes at a time while the shutter is open.
+struct ShutterPose {
   Camera camera;
   std::vector<Shape> shapes;
-  friend bool operator==(const ShutterEnd&, const ShutterEnd&) = default;
+  friend bool operator==(const ShutterPose&, const ShutterPose&) = default;
 };
 
 struct Scene {
@@ -519,7 +519,9 @@ struct Scene {
   Settings settings;
   /// Radiance behind all shapes, visible to camera rays alone; none: surroundings and environments.
   std::optional<Rgb> backdrop{};
-  std::vector<ShutterEnd> shutter{};  ///< opening and closing; empty: nothing moves, or no motion blur
+  /// Poses at equal steps of time from opening to closing, the scene's own in the middle: motion between them is
+  /// straight. Empty: nothing moves, or no motion blur.
+  std::vector<ShutterPose> shutter{};
   /// Frames from the first key of the camera or film to the last, if nothing else is keyed: images of the
   /// same surfaces under the same light; otherwise 1.
   std::size_t camera_frames = 1;

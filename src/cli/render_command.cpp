@@ -179,8 +179,11 @@ Summary summarize(const Session& session, const Shading& shading) {
 RenderArguments repeating(const RenderArguments& arguments, const Session& session, const Shading& shading) {
   if (!chooses_settings(arguments)) return arguments;
   RenderArguments repeated = arguments;
-  for (std::string& text : chosen_overrides(session, shading.direct ? shading.direct->entry_samples : 0))
+  for (std::string& text : chosen_overrides(session, shading.direct ? shading.direct->entry_samples : 0)) {
+    const std::string key = text.substr(0, text.find('=') + 1);
+    std::erase_if(repeated.overrides, [&](const std::string& other) { return other.starts_with(key); });
     repeated.overrides.push_back(std::move(text));
+  }
   if (arguments.target_error)
     repeated.overrides.push_back(
         fmt::format("settings.light_samples={}", session.scene().settings.light_samples));

@@ -115,13 +115,11 @@ SourceMesh read_source(const Shape& shape, const std::string& name, MeshUvs uvs)
         "none");
   if (const auto* file = std::get_if<MeshFile>(&shape.source)) {
     choose_colors(*file, name, mesh);
-    for (int round = 0; round < file->subdivide; ++round) {
-      if (mesh.triangles.size() > kMostTriangles / 4)
-        throw bad_file(name,
-                       "has too many triangles to subdivide " + std::to_string(file->subdivide) + " times",
-                       "at most " + grouped(kMostTriangles) + " after subdivision");
-      mesh = subdivided(std::move(mesh));
-    }
+    if (mesh.triangles.size() > kMostTriangles >> (2 * file->subdivide))
+      throw bad_file(name,
+                     "has too many triangles to subdivide " + std::to_string(file->subdivide) + " times",
+                     "at most " + grouped(kMostTriangles) + " after subdivision");
+    for (int round = 0; round < file->subdivide; ++round) mesh = subdivided(std::move(mesh));
     if (file->fit_size) fit(mesh, *file->fit_size, name);
     if (file->crease_angle) mesh.smoothing = {{}, *file->crease_angle};
   }

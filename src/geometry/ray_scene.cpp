@@ -89,18 +89,16 @@ void RayScene::attach(const World& world, std::size_t index, RayBuild build, con
   std::vector<Vertex> vertices(mesh.positions.size());
   for (std::size_t i = 0; i < vertices.size(); ++i)
     vertices[i] = {Vec3f(mesh.positions[i]), mesh.normals.empty() ? Vec3f{} : mesh.normals[i]};
-  std::array<std::vector<Vertex>, 2> moved;
-  if (!motion.empty()) {
-    rtcSetGeometryTimeStepCount(geometry, 3);
-    for (unsigned end = 0; end < 2; ++end) {
-      for (const Vec3f& p : end == 0 ? motion.first : motion.last) moved[end].push_back({p, {}});
-      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 2 * end, RTC_FORMAT_FLOAT3,
-                                 moved[end].data(), 0, sizeof(Vertex), moved[end].size());
-    }
+  std::vector<std::vector<Vertex>> moved(motion.size());
+  const unsigned steps = std::max(1u, unsigned(motion.size()));
+  rtcSetGeometryTimeStepCount(geometry, steps);
+  for (unsigned i = 0; i < steps; ++i) {
+    if (i != steps / 2)
+      for (const Vec3f& p : motion[i]) moved[i].push_back({p, {}});
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, i, RTC_FORMAT_FLOAT3,
+                               i == steps / 2 ? vertices.data() : moved[i].data(), 0, sizeof(Vertex),
+                               vertices.size());
   }
-  const unsigned middle = motion.empty() ? 0 : 1;
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, middle, RTC_FORMAT_FLOAT3, vertices.data(), 0,
-                             sizeof(Vertex), vertices.size());
   auto* indices = static_cast<std::array<std::uint32_t, 3>*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               sizeof(std::array<std::uint32_t, 3>), mesh.triangles.size()));

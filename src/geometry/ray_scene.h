@@ -45,11 +45,9 @@ struct TracedRay {
 /// distance. `quick` builds faster and traces slower, incoherent rays most.
 enum class RayBuild { careful, quick };
 
-/// A mesh's vertices, in the world's space, at times 0 and 1 of rays; at time 1/2 it is as in the world. Empty: still.
-struct MeshMotion {
-  std::vector<Vec3f> first, last;
-  bool empty() const { return first.empty() || last.empty(); }
-};
+/// A mesh's vertices, in the world's space, at equal steps of time from 0 to 1 of rays; in the middle, empty ones are the
+/// world's. Empty: still.
+using MeshMotion = std::vector<std::vector<Vec3f>>;
 
 /// Ray queries against the meshes of a world. Batches of coherent rays are fastest (256 at once).
 class RayScene {

@@ -184,11 +184,23 @@ World update_world(const Scene& scene, const World& old, std::span<const std::op
 }
 std::vector<Vec3f> moved_vertices(const Scene& scene, const World& world, std::size_t shape,
                                   const Shape& moved) {
-  const CheckedMesh checked = load_mesh(scene, moved, nullptr);
   const Mesh& mesh = world.meshes[shape];
+  const Shape& now = scene.shapes[shape];
+  const Transform& from = now.to_world;
+  const double volume = dot(from.x, cross(from.y, from.z));
+  std::vector<Vec3f> vertices;
+  if (moved.source == now.source && !now.displacement && !moved.displacement && volume != 0) {
+    for (const Vec3d& p : mesh.positions) {
+      const Vec3d v = out_of_world(world, p) - from.translation,
+                  inside{dot(v, cross(from.y, from.z)), dot(v, cross(from.z, from.x)),
+                         dot(v, cross(from.x, from.y))};
+      vertices.emplace_back(into_world(world, transform_point(moved.to_world, inside * (1 / volume))));
+    }
+    return vertices;
+  }
+  const CheckedMesh checked = load_mesh(scene, moved, nullptr);
   if (checked.mesh.triangles != mesh.triangles || checked.mesh.positions.size() != mesh.positions.size())
     return {};
-  std::vector<Vec3f> vertices;
   for (const Vec3d& p : checked.mesh.positions) vertices.emplace_back(into_world(world, p));
   return vertices;
 }

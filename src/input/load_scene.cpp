@@ -357,19 +357,35 @@ std::string unfitted(const AssetDefaults& defaults, std::span<const std::string>
       defaults.lights ? "s" : "");
 }
 
-/// Opening and closing of the shutter; empty: the camera and the shapes stay as in the scene.
-std::vector<ShutterEnd> shutter_ends(const Document& at_frame, const Scene& scene) {
+/// Poses while the shutter is open; empty: the camera and the shapes stay as in the scene. Steps of time are halved until
+/// turning parts move almost straight in each, at most 32 steps.
+std::vector<ShutterPose> shutter_poses(const Document& at_frame, const Scene& scene) {
+  constexpr std::size_t kMostSteps = 32;
   if (scene.film.shutter == 0) return {};
-  std::vector<ShutterEnd> ends;
-  bool moves = false;
-  for (const double time : {-.5 * scene.film.shutter, .5 * scene.film.shutter}) {
+  const auto pose_at = [&](double time) {
     Document document = merged_document(at_frame.text, at_frame.file, at_frame.overrides, at_frame.frame);
-    resolve_at_shutter(document, time);
-    Scene end = read_at_wavelengths(document);
-    moves |= end.camera != scene.camera || !std::ranges::equal(end.shapes, scene.shapes, in_same_place);
-    ends.push_back({std::move(end.camera), std::move(end.shapes)});
+    resolve_at_shutter(document, (time - .5) * scene.film.shutter);
+    Scene pose = read_at_wavelengths(document);
+    return ShutterPose{std::move(pose.camera), std::move(pose.shapes)};
+  };
+  const auto moves = [&](const ShutterPose& pose) {
+    return pose.camera != scene.camera || !std::ranges::equal(pose.shapes, scene.shapes, in_same_place);
+  };
+  std::vector<ShutterPose> poses{pose_at(0), {scene.camera, scene.shapes}, pose_at(1)};
+  if (!moves(poses.front()) && !moves(poses.back())) return {};
+  while (poses.size() <= kMostSteps) {
+    const std::size_t steps = poses.size() - 1;
+    bool is_straight = true;
+    std::vector<ShutterPose> finer{poses[0]};
+    for (std::size_t i = 0; i < steps; ++i) {
+      finer.push_back(pose_at((double(i) + .5) / double(steps)));
+      is_straight = is_straight && is_between(finer.back(), poses[i], poses[i + 1]);
+      finer.push_back(poses[i + 1]);
+    }
+    if (is_straight) break;
+    poses = std::move(finer);
   }
-  return moves ? ends : std::vector<ShutterEnd>{};
+  return poses;
 }
 
 }  // namespace
@@ -431,7 +447,7 @@ Scene parse_scene(std::string_view text, const std::string& file, std::span<cons
     resolve_keyed_values(document);
   }
   Scene scene = read_at_wavelengths(document);
-  scene.shutter = shutter_ends(document, scene);
+  scene.shutter = shutter_poses(document, scene);
   scene.camera_frames = camera_frames;
   scene.warnings.insert(scene.warnings.begin(), document.warnings.begin(), document.warnings.end());
   for (std::string& warning : texture_warnings(scene)) scene.warnings.push_back(std::move(warning));

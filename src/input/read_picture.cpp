@@ -40,6 +40,11 @@ void read_lens(const ObjectReader& reader, double mm_per_unit, Camera& camera) {
         dot(point->point(mm_per_unit) - camera.position, normalized(camera.look_at - camera.position));
     if (depth > 0) camera.focus_distance = depth;  // else that of look_at: a free camera may turn away
   }
+  constexpr double kMostTilt = 1e6;  // rays tilted further lose single precision
+  const double focus = camera.focus_distance.value_or(length(camera.look_at - camera.position));
+  if (camera.aperture > kMostTilt * focus)
+    (aperture ? aperture : f_number)
+        ->fail("opens the lens more than 1,000,000 times the distance in focus", "a smaller lens");
   if (const auto blades = reader.find("blades")) {
     camera.blades = int(blades->whole_number());
     if (camera.blades == 1 || camera.blades == 2) blades->fail("forms no iris", "0 or at least 3");

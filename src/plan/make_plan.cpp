@@ -279,9 +279,10 @@ std::size_t bytes_of_motion(const Scene& scene, const World& world) {
   std::size_t bytes = 0;
   bool moves = false;
   for (std::size_t i = 0; i < world.meshes.size() && !scene.shutter.empty(); ++i) {
-    bytes += world.meshes[i].positions.size() * 150 + world.meshes[i].triangles.size() * 300;
-    for (const ShutterEnd& end : scene.shutter)
-      moves = moves || !in_same_place(end.shapes[i], scene.shapes[i]);
+    const std::size_t steps = (scene.shutter.size() - 1) / 2;  // pairs of them
+    bytes += steps * (world.meshes[i].positions.size() * 150 + world.meshes[i].triangles.size() * 300);
+    for (const ShutterPose& pose : scene.shutter)
+      moves = moves || !in_same_place(pose.shapes[i], scene.shapes[i]);
   }
   return moves ? bytes : 0;
 }

@@ -19,8 +19,8 @@ struct PixelWidth {
 PixelWidth pixel_width(const Camera& camera, const Film& film, const World& world);
 
 /// Rays through the film. Directions have length 1 along the view axis, so a ray's time is the depth Z. All
-/// pixels share one pattern of sub-pixel positions, sampled from the reconstruction filter; a single sample
-/// is at the centre. Positions on a lens differ from pixel to pixel.
+/// pixels share one pattern of sub-pixel positions, sampled from the reconstruction filter; their mean is the
+/// centre. Positions on a lens differ from pixel to pixel.
 class CameraRays {
  public:
   CameraRays(const Camera& camera, const Film& film, const World& world);
@@ -62,7 +62,7 @@ class CameraRays {
   int blades_;
   std::vector<Place> places_;  // relative to the pixel's centre
   bool has_shutter_ = false;
-  std::vector<CameraRays> ends_;  // when the shutter opens and closes; empty: the camera stays
+  std::vector<CameraRays> poses_;  // while the shutter is open; empty: the camera stays
 };
 
 /// First hits of camera rays: rays pass through shapes hidden from the camera.

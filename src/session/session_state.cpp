@@ -384,14 +384,32 @@ void Session::State::update_rays() {
   moved_by_ = scene_.shutter;
 }
 
+/// Steps of the shutter in which a shape moves straight, for all poses beside them: half of all or 1.
+std::size_t Session::State::straight_steps(std::size_t shape) const {
+  const std::size_t half = scene_.shutter.size() / 2;
+  const auto place = [&](std::size_t pose) { return scene_.shutter[pose].shapes[shape].to_world; };
+  return half > 1 && is_between(place(half / 2), place(0), place(half)) &&
+                 is_between(place(half + half / 2), place(half), place(2 * half))
+             ? half
+             : 1;
+}
+
 /// Motions while the shutter is open; empty: no shape moves.
 std::vector<MeshMotion> Session::State::mesh_motions() const {
   std::vector<MeshMotion> motions(scene_.shapes.size());
   for (std::size_t i = 0; i < motions.size() && !scene_.shutter.empty(); ++i) {
-    const Shape &first = scene_.shutter[0].shapes[i], &last = scene_.shutter[1].shapes[i],
-                &now = scene_.shapes[i];
-    if (in_same_place(first, now) && in_same_place(last, now)) continue;
-    motions[i] = {moved_vertices(scene_, *world_, i, first), moved_vertices(scene_, *world_, i, last)};
+    const std::size_t middle = scene_.shutter.size() / 2, stride = straight_steps(i);
+    const auto stays = [&](const ShutterPose& pose) {
+      return in_same_place(pose.shapes[i], scene_.shapes[i]);
+    };
+    if (std::ranges::all_of(scene_.shutter, stays)) continue;
+    for (std::size_t k = 0; k < scene_.shutter.size(); k += stride) {
+      motions[i].emplace_back();
+      if (k == middle) continue;
+      motions[i].back() = moved_vertices(scene_, *world_, i, scene_.shutter[k].shapes[i]);
+      if (motions[i].back().empty()) break;
+    }
+    if (motions[i].back().empty()) motions[i].clear();  // the triangles differ
   }
   if (std::ranges::all_of(motions, &MeshMotion::empty)) return {};
   return motions;

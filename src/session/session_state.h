@@ -37,6 +37,7 @@ struct Session::State {
   void keep_cells();
   void keep_spacing();
   void update_rays();
+  std::size_t straight_steps(std::size_t shape) const;
   std::vector<MeshMotion> mesh_motions() const;
   void arrange_bodies();
   void update_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group);
@@ -70,7 +71,7 @@ struct Session::State {
   std::unique_ptr<RayScene> rays_;
   RayBuild rays_build_ = RayBuild::careful;
   std::vector<MeshKeys> rays_keys_;
-  std::vector<ShutterEnd> moved_by_;  // motion of the rays' meshes
+  std::vector<ShutterPose> moved_by_;  // motion of the rays' meshes
   std::vector<Body> bodies_;
   std::vector<BodyKeys> keys_;  // one per body
   std::size_t pictures_ = 1;

@@ -43,6 +43,7 @@ Vec3d lean(Asset asset, int x, int y, const Json& scale = {1, 1, 1}) {
   put_bytes(folder.file("a.glb"), asset.glb());
   Scene scene = load_scene(folder.file("a.glb"));
   scene.film.resolution = {1, 1};
+  scene.film.samples_per_pixel = 1;
   scene.camera = {.position = {0, 0, 5000}, .look_at = {0, 0, 0}};
   Session session;
   session.edit(scene);

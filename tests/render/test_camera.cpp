@@ -2,9 +2,11 @@
 // Projections, shift and depth of field.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/random.h"
 #include "render/camera_rays.h"
 #include "support/scenes.h"
 
@@ -122,6 +124,45 @@ TEST(Camera, ShiftMovesByPixels) {
   EXPECT_NEAR(length(there - here), 0, 1e-6f);
 }
 
+// Part of the unit square around the origin with x cos + y sin below a distance.
+double covered(double cosine, double sine, double distance) {
+  const double a = std::abs(cosine), b = std::abs(sine);
+  const auto half_square = [](double side) { return side > 0 ? side * side / 2 : 0; };
+  return (half_square(distance + (a + b) / 2) - half_square(distance + (a - b) / 2) -
+          half_square(distance - (a - b) / 2) + half_square(distance - (a + b) / 2)) /
+         (a * b);
+}
+
+// Claim: the samples of a pixel have its centre as mean, and resolve edges far better than random ones: the error of a random
+// edge's coverage is at most that of a regular grid, and 15 %. Source: exact areas. Fails if: samples are a part of a long
+// sequence (R2: .152, .089, .071, .021, and the mean .15 pixels off).
+TEST(Camera, SamplesOfAPixelResolveEdges) {
+  for (const auto& [count, grid] :
+       {std::pair{4, .0885}, {9, .0480}, {16, .0314}, {64, .0111}, {10, .055}, {7, .07}}) {
+    const CameraRays rays(looking_down(), film_of(count), far_world());
+    std::vector<Vec3d> places;
+    Vec3d mean;
+    for (int s = 0; s < count; ++s) {
+      const CameraRays::FilmPlace seen = rays.film_place(point_at(rays.ray(20, 30, s), 17));
+      places.push_back({seen.x - 20.5, seen.y - 30.5, 0});
+      mean = mean + places.back() * (1. / count);
+    }
+    EXPECT_LT(length(mean), 2e-3) << count;
+    double squares = 0;
+    constexpr int kEdges = 20000;
+    for (std::uint64_t i = 0; i < kEdges; ++i) {
+      const auto [turn, place] = r2_point(i, {.1, .2});
+      const double cosine = std::cos(2 * kPi * turn), sine = std::sin(2 * kPi * turn),
+                   distance = (place - .5) * (std::abs(cosine) + std::abs(sine));
+      const auto below =
+          std::ranges::count_if(places, [&](const Vec3d& p) { return p.x * cosine + p.y * sine < distance; });
+      const double error = double(below) / count - covered(cosine, sine, distance);
+      squares += error * error / kEdges;
+    }
+    EXPECT_LT(std::sqrt(squares), 1.15 * grid) << count;
+  }
+}
+
 // Claim: all rays of a pixel meet in the plane of focus, where the pinhole's ray with this sub-pixel position does. Source:
 // the thin lens. Tolerance: single precision at a distance of 20. Fails if: the focus is measured along rays, or in mm.
 TEST(Camera, RaysMeetInThePlaneOfFocus) {
@@ -197,7 +238,7 @@ TEST(Camera, PixelsRotateTheLens) {
 }
 
 // Claim: a small far lamp out of focus shows as a disc as large as blur_radius says, with the light that it has in focus.
-// Source: energy; the lamp alone is in the image. Tolerance: 3 % of the sum and of the root mean square radius with 64 rays a pixel.
+// Source: energy; the lamp alone is in the image. Tolerance: 3 % of the sum and of the root mean square radius with 400 rays a pixel.
 // Fails if: rays through the lens carry another weight than the pinhole's, or lamps are met from the middle of the lens alone.
 TEST(Camera, LampsBlurToDiscsOfTheSameLight) {
   Scene scene = single_shape(SphereShape{{0, 0, 900}, 1, kLeastFineness}, grey_medium(1, 0.5, 1.3), 1);
@@ -205,7 +246,7 @@ TEST(Camera, LampsBlurToDiscsOfTheSameLight) {
   scene.camera = Camera{{0, 0, 100}, {0, 0, 0}};
   scene.camera.field_of_view = 20;
   scene.film.resolution = {96, 96};
-  scene.film.samples_per_pixel = 64;
+  scene.film.samples_per_pixel = 400;
   scene.settings.method = Method::lambert;
   const auto measured = [&] {
     const Image image = Prepared(scene).picture();

@@ -52,6 +52,8 @@ TEST(SceneErrors, NameThePlace) {
       {R"({"camera": {"focus_distance": 1, @"focus_point": [0, 0, 0]}})", {"beside 'camera.focus_distance'"}},
       {R"({"camera": {"orthographic_height": 1, @"f_number": 2}})", {"cannot stand beside"}},
       {R"({"camera": {"aperture": @-1}})", {"'camera.aperture'", "got -1"}},
+      {R"({"camera": {"aperture": @1e19}})", {"'camera.aperture'", "the distance in focus"}},
+      {R"({"camera": {"f_number": @1e-20}})", {"'camera.f_number'", "the distance in focus"}},
       {R"({"camera": {"f_number": @0}})", {"'camera.f_number'", "got 0"}},
       {R"({"camera": {"blades": @2}})", {"forms no iris", "0 or at least 3", "got 2"}},
       {R"({"camera": {"shift": @[1]}})", {"'camera.shift'", "a list of 2 numbers"}},
