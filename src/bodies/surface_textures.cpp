@@ -140,17 +140,35 @@ float map_normal(const Texture& texture, const SurfaceTextures::Place& place, Su
   return variance;
 }
 
-/// Height gradient of the height over the surface, mm per world unit.
-Vec3f height_gradient(const Texture& texture, const SurfaceTextures::Place& place) {
-  const auto [along_u, along_v] = texture.source->image()->slope(
-      texture_place(texture, *place.uv, place.footprint, place.on_whole_face), texture.channel);
+/// Height gradients of the heights over the surface, mm per world unit.
+struct HeightGradient {
+  Vec3f mean{};
+  float variance = 0;  ///< along each axis
+};
+
+/// in    needs_variance: false: 0
+HeightGradient height_gradient(const Texture& texture, const SurfaceTextures::Place& place,
+                               bool needs_variance) {
+  const TextureFile& image = *texture.source->image();
+  const TexturePlace at = texture_place(texture, *place.uv, place.footprint, place.on_whole_face);
+  const auto [along_u, along_v] = image.slope(at, texture.channel);
   // Angle of the image's u and v, by the mesh's.
   const double angle = texture.uv_rotation * std::numbers::pi / 180;
   const double cosine = std::cos(angle), sine = std::sin(angle);
   const Vec3f x = place.uv->gradient_u * float(texture.uv_scale[0]),
               y = place.uv->gradient_v * float(-texture.uv_scale[1]);
   const Vec3f of_u = x * float(cosine) + y * float(sine), of_v = y * float(cosine) - x * float(sine);
-  return (of_u * along_u + of_v * along_v) * float(texture.scale.x);
+  const auto scale = float(texture.scale.x);
+  HeightGradient gradient{(of_u * along_u + of_v * along_v) * scale};
+  constexpr float kFewTexels = 4;  // the smallest mean of squares
+  const float texels = needs_variance ? image.texels_across(at) : 0;
+  if (!(texels > kFewTexels / 2)) return gradient;
+  const auto [uu, uv, vv] = image.squared_slopes(at, texture.channel, texels);
+  const float squares =
+      (dot(of_u, of_u) * uu + 2 * dot(of_u, of_v) * uv + dot(of_v, of_v) * vv) * scale * scale;
+  gradient.variance = std::max(0.f, squares - dot(gradient.mean, gradient.mean)) / 2 *
+                      std::min(1.f, 2 * texels / kFewTexels - 1);
+  return gradient;
 }
 
 /// Around +y, as turned on a lathe; where the normal is +y itself, along x.
@@ -202,6 +220,7 @@ SurfaceTextures::SurfaceTextures(const Scene& scene, const World& world)
     if (own.has_colors && !shape.medium && !shape.has_reflectance)
       own.factor = Rgb(1 / kDefaultReflectance.x);
     own.has_tint = own.tint != nullptr || own.factor != Rgb(1) || own.weight != nullptr || own.has_colors;
+    own.is_rough = is_rough(scene, shape);
     own.grain = grain_of(scene, shape);
     own.has_uv = uvs_of(scene, shape) != MeshUvs::unread && !world.meshes[m].uvs.empty();
     own.has_tangents = !world.meshes[m].tangents.empty();
@@ -346,9 +365,16 @@ float SurfaceTextures::bend(const Place& place, SurfacePoint& point) const {
     for (const Texture& detail : own.normals->details) variance += map_normal(detail, place, point);
   }
   if (own.heights == nullptr) return variance;
-  const Vec3f rise = is_solid(*own.heights) ? solid_rise(*own.heights, *own.space, place.solid)
-                                            : height_gradient(*own.heights, place) * float(1 / world_.unit),
-              along = rise - point.normal * dot(rise, point.normal);
+  Vec3f rise;
+  if (is_solid(*own.heights)) {
+    rise = solid_rise(*own.heights, *own.space, place.solid);
+  } else {
+    const auto unit = float(1 / world_.unit);
+    const HeightGradient gradient = height_gradient(*own.heights, place, own.is_rough);
+    rise = gradient.mean * unit;
+    variance += gradient.variance * unit * unit;
+  }
+  const Vec3f along = rise - point.normal * dot(rise, point.normal);
   if (along != Vec3f{}) point.normal = normalized(point.normal - along * outward(place));
   return variance;
 }

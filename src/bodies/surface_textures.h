@@ -70,8 +70,8 @@ class SurfaceTextures {
   RgbF reflected(const Place& place) const;
   MediumFactors medium(const Place& place) const;
   LocalGrain grain(const Place& place, const SurfacePoint& point) const;
-  /// Bends the point's shading normal by the normal map and then the bump map, if present. Returns the variance of
-  /// the normal map's slopes within the footprint, along each axis.
+  /// Bends the point's shading normal by the normal map and then the bump map, if present. Returns the variance of their
+  /// slopes within the footprint, along each axis; without a rough boundary, that of the normal map.
   float bend(const Place& place, SurfacePoint& point) const;
   /// The same over the width of a point, in all directions. Returns a factor of the light entering, which tilted parts
   /// lose in uniform light: 1 / sqrt(c) with the cosine c of the tilt, within 0.2 % of 2 / (1 + c) up to 27 degrees.
@@ -84,6 +84,7 @@ class SurfaceTextures {
     Rgb factor{1, 1, 1};               ///< times the tint's texture
     double at_entry = 0, at_exit = 1;  ///< exponents of the tint
     bool has_whole_faces = false, has_tint = false, has_uv = false, has_tangents = false, has_colors = false;
+    bool is_rough = false;  ///< the boundary
     const Grain* grain = nullptr;
     const Medium* partly_opaque = nullptr;
     std::optional<SolidSpace> space{};  ///< for textures without UVs

@@ -17,6 +17,9 @@ class CachedPicture {
   virtual ~CachedPicture() = default;
   virtual std::array<float, 4> at(const TexturePlace& place) const = 0;
   virtual std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const = 0;
+  /// SlopePyramid::at of a channel; zeros where the image is windowed.
+  virtual std::array<float, 3> squared_slopes(const TexturePlace& place, std::size_t channel,
+                                              float texels) const = 0;
   /// Constant texel, if all are equal.
   virtual std::optional<Texel> constant() const = 0;
   virtual Texel mean() const = 0;

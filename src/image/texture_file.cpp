@@ -193,6 +193,13 @@ std::array<float, 2> TextureFile::slope(const TexturePlace& place, std::size_t c
   return picture == nullptr ? std::array<float, 2>{} : picture->slope(within, channel);
 }
 
+std::array<float, 3> TextureFile::squared_slopes(const TexturePlace& place, std::size_t channel,
+                                                 float texels) const {
+  TexturePlace within = place;
+  const CachedPicture* const picture = picture_at(within);
+  return picture == nullptr ? std::array<float, 3>{} : picture->squared_slopes(within, channel, texels);
+}
+
 float TextureFile::texels_across(TexturePlace place) const {
   const CachedPicture* const picture = picture_at(place);
   if (picture == nullptr) return 0;

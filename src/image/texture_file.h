@@ -64,6 +64,9 @@ class TextureFile final : public TextureSource {
   /// Derivatives of a channel of at() along the full image, to the right and down; smooth between texels.
   /// Thread-safe.
   std::array<float, 2> slope(const TexturePlace& place, std::size_t channel) const;
+  /// Means of the squares of slope() within a footprint of this many texels of the full size: to the right squared, right
+  /// times down, and down squared. Reads the whole image the first time. Thread-safe.
+  std::array<float, 3> squared_slopes(const TexturePlace& place, std::size_t channel, float texels) const;
   /// Length of the longer side of a footprint, texels of the full size.
   float texels_across(TexturePlace place) const;
 

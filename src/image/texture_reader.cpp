@@ -11,12 +11,14 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "core/machine_memory.h"
 #include "image/cached_picture.h"
 #include "image/exr_chunks.h"
 #include "image/linear_input.h"
 #include "image/picture_file.h"
+#include "image/slope_pyramid.h"
 #include "image/texel_colors.h"
 #include "image/texel_layout.h"
 #include "opaline/error.h"
@@ -230,6 +232,22 @@ class OiioPicture : public CachedPicture {
     return {along_u[at], along_v[at]};
   }
 
+  std::array<float, 3> squared_slopes(const TexturePlace& place, std::size_t channel,
+                                      float texels) const override {
+    if (is_windowed_) return {};
+    std::call_once(has_slopes_[channel], [&] {
+      SlopePyramid made(resolution_[0], resolution_[1]);
+      std::vector<float> row;
+      for_each_texel(*source_, colors_, [&](const Texel& texel, std::size_t) {
+        row.push_back(float(texel[channel]));
+        if (int(row.size()) == resolution_[0]) made.add_row(std::exchange(row, {}));
+        return true;
+      });
+      slopes_[channel].emplace(std::move(made));
+    });
+    return slopes_[channel]->at(place.u, place.v, texels);
+  }
+
   std::optional<Texel> constant() const override {
     // Comparing bytes is far faster than comparing texels, but does not support windows.
     if (!is_windowed_ && !is_even(*source_)) return {};
@@ -310,6 +328,8 @@ class OiioPicture : public CachedPicture {
   std::optional<FloatRange> range_;  // none: integers
   mutable std::mutex above_one_mutex_;
   mutable std::map<std::array<double, 3>, TexelsAboveOne> above_one_;  // by scale
+  mutable std::array<std::once_flag, 4> has_slopes_;
+  mutable std::array<std::optional<SlopePyramid>, 4> slopes_;  // by channel
   std::string warning_;
   int channels_ = 0;  // channels of a texel
   std::array<bool, 4> has_channel_{};

@@ -133,7 +133,7 @@ struct Appearance {
   }
 };
 
-/// in    has_normals: a normal map, whose slopes within a pixel add to the roughness
+/// in    has_normals: a map whose slopes within a pixel add to the roughness
 inline void roughen(Appearance& appearance, double roughness, const std::optional<Texture>& texture,
                     const Grain& grain, double eta, bool has_normals) {
   const float anisotropy = float(grain.anisotropy);
@@ -148,6 +148,11 @@ inline void roughen(Appearance& appearance, double roughness, const std::optiona
     appearance.roughnesses = shared_roughness(eta, anisotropy, appearance.roughness);
   else if (roughness > 0)
     appearance.rough.emplace(roughness, eta);
+}
+
+/// True with a normal map, or an image of heights.
+inline bool has_slopes(const Shape& shape) {
+  return shape.normal_map || (shape.bump_map && !is_solid(*shape.bump_map));
 }
 
 inline void set_fuzz(Appearance& appearance, const Fuzz& fuzz, const OuterBoundary& boundary) {
@@ -166,8 +171,7 @@ inline Appearance opaque_appearance(const Shape& shape, const OuterBoundary& bou
   appearance.has_boundary = true;
   appearance.metalness = float(gloss.metalness);
   appearance.metalness_texture = pointer_to(gloss.metalness_texture);
-  roughen(appearance, gloss.roughness, gloss.roughness_texture, gloss.grain, gloss.eta,
-          shape.normal_map.has_value());
+  roughen(appearance, gloss.roughness, gloss.roughness_texture, gloss.grain, gloss.eta, has_slopes(shape));
   return appearance;
 }
 
@@ -182,7 +186,7 @@ inline Appearance mesh_appearance(const Scene& scene, const Shape& shape, const 
                         true};
   set_fuzz(appearance, medium.fuzz, boundary);
   roughen(appearance, medium.specular_roughness, medium.roughness_texture, medium.grain, medium.eta,
-          shape.normal_map.has_value());
+          has_slopes(shape));
   if (follows_light)
     appearance.exit = std::make_shared<const AngularExit>(reduced_absorption(medium), medium.eta);
   return appearance;

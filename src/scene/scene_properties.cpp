@@ -71,17 +71,18 @@ bool needs_uvs(const Scene& scene, const Shape& shape) {
                              [](const Texture* texture) { return !is_solid(*texture); });
 }
 
-const Grain* grain_of(const Scene& scene, const Shape& shape) {
-  const auto found = [](const Grain& grain, double roughness, const std::optional<Texture>& texture) {
-    return (grain.anisotropy > 0 || grain.anisotropy_texture) && (roughness > 0 || texture) ? &grain
-                                                                                            : nullptr;
-  };
+bool is_rough(const Scene& scene, const Shape& shape) {
   if (shape.medium) {
     const Medium& medium = scene.media[*shape.medium];
-    return found(medium.grain, medium.specular_roughness, medium.roughness_texture);
+    return medium.specular_roughness > 0 || medium.roughness_texture;
   }
-  return shape.gloss ? found(shape.gloss->grain, shape.gloss->roughness, shape.gloss->roughness_texture)
-                     : nullptr;
+  return shape.gloss && (shape.gloss->roughness > 0 || shape.gloss->roughness_texture);
+}
+
+const Grain* grain_of(const Scene& scene, const Shape& shape) {
+  if (!is_rough(scene, shape)) return nullptr;
+  const Grain& grain = shape.medium ? scene.media[*shape.medium].grain : shape.gloss->grain;
+  return grain.anisotropy > 0 || grain.anisotropy_texture ? &grain : nullptr;
 }
 
 MeshUvs uvs_of(const Scene& scene, const Shape& shape) {

@@ -57,6 +57,8 @@ Transform solid_to_world(const Shape& shape);
 bool needs_uvs(const Scene& scene, const Shape& shape);
 /// Anisotropy of a shape's rough boundary; null for smooth or isotropic ones.
 const Grain* grain_of(const Scene& scene, const Shape& shape);
+/// True if the boundary of a shape is rough somewhere.
+bool is_rough(const Scene& scene, const Shape& shape);
 
 /// Surface coordinates read with a mesh: UVs, and tangents if the file has them.
 enum class MeshUvs {
