@@ -69,7 +69,7 @@ class EdgeExitance {
   }
   /// False for a sliver, whose plane says little about the surface around it.
   bool is_wide(std::uint32_t element) const {
-    constexpr double kLeastArea = .2;  // of a face of a cell
+    constexpr double kLeastArea = .2;  // faces of a cell
     return double(space_.boundary.elements[element].area) >
            kLeastArea * space_.lattice.cell * space_.lattice.cell;
   }
