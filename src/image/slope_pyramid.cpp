@@ -83,13 +83,12 @@ SlopePyramid::Squares SlopePyramid::Level::at(float u, float v) const {
     const int i = (int(first) + count) % count;
     return std::pair{std::array{std::size_t(i), std::size_t((i + 1) % count)}, at - first};
   };
-  const auto [x, share_x] = place(u, width);
-  const auto [y, share_y] = place(v, height);
+  const auto x = place(u, width), y = place(v, height);
   const auto row = [&](std::size_t i) {
     const Squares* const cells_of_row = &cells[i * std::size_t(width)];
-    return mixed(cells_of_row[x[0]], cells_of_row[x[1]], share_x);
+    return mixed(cells_of_row[x.first[0]], cells_of_row[x.first[1]], x.second);
   };
-  return mixed(row(y[0]), row(y[1]), share_y);
+  return mixed(row(y.first[0]), row(y.first[1]), y.second);
 }
 
 std::array<float, 3> SlopePyramid::at(float u, float v, float texels) const {

@@ -78,6 +78,18 @@ std::vector<double> highlights(const ScratchFolder& folder, int pixels, const st
   return blocks;
 }
 
+void expect_alike(const std::vector<double>& far, const std::vector<double>& near, double of_sum,
+                  double of_mean) {
+  double sum = 0, of_far = 0, off = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    sum += near[i];
+    of_far += far[i];
+    off += std::abs(far[i] - near[i]);
+  }
+  EXPECT_NEAR(of_far / sum, 1, of_sum);
+  EXPECT_LT(off / sum, of_mean);
+}
+
 // Claim: a far image of facets is its near image, scaled down. Source: 64 texels a facet, 256 facets a far pixel, Gaussian slopes of
 // .2 under an alpha of .12. Tolerance: 3 % in the sum; 12 % in the mean of the pixels' differences, as about 40 facets of a pixel
 // reflect the lamp. Fails if: the slopes' variance does not widen the lobe (sum 1.70, mean difference 114 %), or is counted once
@@ -86,14 +98,7 @@ TEST(NormalFiltering, FarIsNearScaledDown) {
   const ScratchFolder folder;
   put_facets(folder.file("facets.exr"), .2);
   const std::vector<double> near = highlights(folder, 2048, "0.35"), far = highlights(folder, kFar, "0.35");
-  double sum = 0, of_far = 0, off = 0;
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    sum += near[i];
-    of_far += far[i];
-    off += std::abs(far[i] - near[i]);
-  }
-  EXPECT_NEAR(of_far / sum, 1, .03);
-  EXPECT_LT(off / sum, .12);
+  expect_alike(far, near, .03, .12);
 }
 
 // Claim: so is a far image of heights. Source: Gaussian slopes of .2 under an alpha of .12, 28 waves a far pixel. Tolerance: 5 % in
@@ -103,14 +108,7 @@ TEST(NormalFiltering, FarHeightsAreNearOnesScaledDown) {
   const std::string map = put_waves(folder.file("waves.exr"), .2);
   const std::vector<double> near = highlights(folder, 512, "0.35", map),
                             far = highlights(folder, kFar, "0.35", map);
-  double sum = 0, of_far = 0, off = 0;
-  for (std::size_t i = 0; i < near.size(); ++i) {
-    sum += near[i];
-    of_far += far[i];
-    off += std::abs(far[i] - near[i]);
-  }
-  EXPECT_NEAR(of_far / sum, 1, .05);
-  EXPECT_LT(off / sum, .2);
+  expect_alike(far, near, .05, .2);
 }
 
 }  // namespace
