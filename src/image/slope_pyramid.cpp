@@ -17,14 +17,10 @@ Values mixed(const Values& a, const Values& b, float share) {
   return result;
 }
 
-int divided_up(int value, int divisor) {
-  return (value + divisor - 1) / divisor;
-}
-
 }  // namespace
 
 SlopePyramid::SlopePyramid(int width, int height) : width_(width), height_(height) {
-  Level base{divided_up(width, kCell), divided_up(height, kCell), {}};
+  Level base{(width + kCell - 1) / kCell, (height + kCell - 1) / kCell, {}};
   base.cells.resize(std::size_t(base.width) * std::size_t(base.height));
   levels_.push_back(std::move(base));
 }
@@ -68,7 +64,7 @@ void SlopePyramid::finish() {
     }
   while (levels_.back().cells.size() > 1) {
     const Level& finer = levels_.back();
-    Level coarser{divided_up(finer.width, 2), divided_up(finer.height, 2), {}};
+    Level coarser{(finer.width + 1) / 2, (finer.height + 1) / 2, {}};
     for (int y = 0; y < coarser.height; ++y)
       for (int x = 0; x < coarser.width; ++x)
         coarser.cells.push_back(

@@ -384,8 +384,8 @@ void Session::State::update_rays() {
   moved_by_ = scene_.shutter;
 }
 
-/// Steps of the shutter in which a shape moves straight, for all poses beside them: half of all or 1.
-std::size_t Session::State::straight_steps(std::size_t shape) const {
+/// Steps between the poses that the rays need of a shape: half of all if it moves straight in each half, otherwise 1.
+std::size_t Session::State::pose_stride(std::size_t shape) const {
   const std::size_t half = scene_.shutter.size() / 2;
   const auto place = [&](std::size_t pose) { return scene_.shutter[pose].shapes[shape].to_world; };
   return half > 1 && is_between(place(half / 2), place(0), place(half)) &&
@@ -398,7 +398,7 @@ std::size_t Session::State::straight_steps(std::size_t shape) const {
 std::vector<MeshMotion> Session::State::mesh_motions() const {
   std::vector<MeshMotion> motions(scene_.shapes.size());
   for (std::size_t i = 0; i < motions.size() && !scene_.shutter.empty(); ++i) {
-    const std::size_t middle = scene_.shutter.size() / 2, stride = straight_steps(i);
+    const std::size_t middle = scene_.shutter.size() / 2, stride = pose_stride(i);
     const auto stays = [&](const ShutterPose& pose) {
       return in_same_place(pose.shapes[i], scene_.shapes[i]);
     };

@@ -37,7 +37,7 @@ struct Session::State {
   void keep_cells();
   void keep_spacing();
   void update_rays();
-  std::size_t straight_steps(std::size_t shape) const;
+  std::size_t pose_stride(std::size_t shape) const;
   std::vector<MeshMotion> mesh_motions() const;
   void arrange_bodies();
   void update_samples(Body& body, BodyKeys& known, const PrecomputeInput& input, std::size_t group);

@@ -95,8 +95,7 @@ class RoughnessRange {
   std::vector<RoughBoundary> boundaries_;  // all azimuths of each roughness
 };
 
-/// Boundaries of one index, interpolated between tabulated anisotropies; errors of reflectances: .0024 at 95 %, at most
-/// .018.
+/// Boundaries of one index, interpolated between tabulated anisotropies.
 class AnisotropyRange {
  public:
   explicit AnisotropyRange(double eta);
