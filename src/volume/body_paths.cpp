@@ -23,12 +23,16 @@ ElementsOfCells::ElementsOfCells(const Lattice& lattice, const DiffusionGrid& gr
     if (cells[i] != DiffusionGrid::kNone) elements_[next[cells[i]]++] = i;
 }
 
-// Nearest element to a point among a cell's, with the path going outwards.
+// Nearest element to a point among a cell's, with the path going outwards; no slivers beside other elements.
 std::uint32_t BodyPaths::nearest_left(const Way& way, const Vec3d& about, std::uint32_t cell,
                                       bool only_if_behind) const {
   std::uint32_t found = DiffusionGrid::kNone;
   double nearest = INFINITY;
-  for (const std::uint32_t e : space_.elements_of.of(cell)) {
+  const std::span<const std::uint32_t> elements = space_.elements_of.of(cell);
+  const bool has_wide =
+      elements.size() > 1 && std::ranges::any_of(elements, [&](std::uint32_t e) { return space_.is_wide(e); });
+  for (const std::uint32_t e : elements) {
+    if (has_wide && !space_.is_wide(e)) continue;
     const BoundaryElement& element = space_.boundary.elements[e];
     const Vec3d apart = about - space_.in_lattice(element.position), normal(element.normal);
     if (!(dot(way.along, normal) > 0) || dot(apart, apart) >= nearest) continue;

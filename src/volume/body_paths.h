@@ -50,6 +50,11 @@ struct DiffusionSpace {
     return media[varies() ? cell : 0];
   }
   double eta() const { return media[0][0].eta; }
+  /// False for a sliver, whose plane says little about the surface around it.
+  bool is_wide(std::uint32_t element) const {
+    constexpr double kLeastArea = .2;  // faces of a cell
+    return double(boundary.elements[element].area) > kLeastArea * lattice.cell * lattice.cell;
+  }
   Vec3d in_lattice(const Vec3f& position) const { return lattice.into(Vec3d(position)); }
 };
 

@@ -88,7 +88,7 @@ bool EdgeExitance::is_near_other_sheet(std::size_t element) const {
         }))
       continue;
     const BodyPaths::End end = paths_.follow(way, 0, farthest, cell, [](double, double, std::uint32_t) {});
-    if (end.exit && is_wide(end.exit->element) && std::abs(agreement(from, end.exit->element)) < kSameSheet)
+    if (end.exit && space_.is_wide(end.exit->element) && std::abs(agreement(from, end.exit->element)) < kSameSheet)
       return true;
   }
   return false;
@@ -144,7 +144,7 @@ void EdgeExitance::follow(std::size_t sample, Paths& paths) const {
       end_node(end.cell);
       if (!end.exit) break;
       const float agreement_there = agreement(from, end.exit->element);
-      if (leg == 0 && is_wide(end.exit->element) && agreement_there < kSameSheet)
+      if (leg == 0 && space_.is_wide(end.exit->element) && agreement_there < kSameSheet)
         (agreement_there > -kSameSheet ? paths.beside : paths.opposite) += left;
       add_sheet(end.exit->element, paths);
       const auto [further, reflectance] = paths_.reflected(way, *end.exit);

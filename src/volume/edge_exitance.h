@@ -67,12 +67,6 @@ class EdgeExitance {
   float agreement(const BoundaryElement& from, std::uint32_t element) const {
     return dot(from.normal, space_.boundary.elements[element].normal);
   }
-  /// False for a sliver, whose plane says little about the surface around it.
-  bool is_wide(std::uint32_t element) const {
-    constexpr double kLeastArea = .2;  // faces of a cell
-    return double(space_.boundary.elements[element].area) >
-           kLeastArea * space_.lattice.cell * space_.lattice.cell;
-  }
   bool has_own_sheet_only(const BoundaryElement& from, const Vec3d& position) const;
   bool is_near_other_sheet(std::size_t element) const;
   void follow(std::size_t sample, Paths& paths) const;

@@ -38,6 +38,10 @@ class Depositor {
 
   /// entering: W
   void enter(const Vec3d& outward, const Rgb& entering, std::size_t i, bool is_focused);
+  /// Light meeting a part of the body thinner than the cells, e.g. the tip of a needle: it crosses.
+  void cross(const Rgb& entering, std::size_t i) {
+    result_.uncollided[i] += RgbF(entering / double(space_.boundary.elements[i].area));
+  }
   FirstCollisions take() { return std::move(result_); }
 
  private:
@@ -255,7 +259,11 @@ class EntryInParts {
     parallel_chunks(flux.size(), of_part, [&](std::size_t begin, std::size_t end, std::size_t part) {
       for (std::size_t i = begin; i < end; ++i) {
         advance(monitor_, 1);
-        if (!(max_component(flux[i]) > 0) || space_.attached[i].cell == DiffusionGrid::kNone) continue;
+        if (!(max_component(flux[i]) > 0)) continue;
+        if (space_.attached[i].cell == DiffusionGrid::kNone) {
+          parts_[part].cross(flux[i], i);
+          continue;
+        }
         const EntryDirections entry = light.directions(i);
         for (const EntryDirection& from : entry.all())
           parts_[part].enter(Vec3d(from.outward), flux[i] * from.share, i, light.is_focused);
