@@ -29,8 +29,8 @@ std::uint32_t BodyPaths::nearest_left(const Way& way, const Vec3d& about, std::u
   std::uint32_t found = DiffusionGrid::kNone;
   double nearest = INFINITY;
   const std::span<const std::uint32_t> elements = space_.elements_of.of(cell);
-  const bool has_wide =
-      elements.size() > 1 && std::ranges::any_of(elements, [&](std::uint32_t e) { return space_.is_wide(e); });
+  const bool has_wide = elements.size() > 1 &&
+                        std::ranges::any_of(elements, [&](std::uint32_t e) { return space_.is_wide(e); });
   for (const std::uint32_t e : elements) {
     if (has_wide && !space_.is_wide(e)) continue;
     const BoundaryElement& element = space_.boundary.elements[e];

@@ -88,7 +88,8 @@ bool EdgeExitance::is_near_other_sheet(std::size_t element) const {
         }))
       continue;
     const BodyPaths::End end = paths_.follow(way, 0, farthest, cell, [](double, double, std::uint32_t) {});
-    if (end.exit && space_.is_wide(end.exit->element) && std::abs(agreement(from, end.exit->element)) < kSameSheet)
+    if (end.exit && space_.is_wide(end.exit->element) &&
+        std::abs(agreement(from, end.exit->element)) < kSameSheet)
       return true;
   }
   return false;

@@ -60,7 +60,7 @@ VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::
 }
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
-constexpr std::uint64_t kCellsVersion = 7, kDiffusionVersion = 11;
+constexpr std::uint64_t kCellsVersion = 7, kDiffusionVersion = 12;
 
 StageKey cells_key(const BodyStages& stages) {
   const Body& body = stages.body;
