@@ -289,7 +289,7 @@ std::size_t bytes_of_motion(const Scene& scene, const World& world) {
 
 }  // namespace
 
-Plan make_plan(const Scene& scene, const World& world) {
+Plan make_plan(const Scene& scene, const World& world, std::span<const BodyPlan> reference) {
   check_reach(scene, world);
   check_bounces(scene);
   const std::vector<Light> lights = recentred_lights(scene, world);
@@ -327,7 +327,7 @@ Plan make_plan(const Scene& scene, const World& world) {
   const std::size_t without_bodies = plan.bytes;
   std::size_t samples = 0, caches = 0;
   double temporary = 0;  // one body after the other
-  const PlanningInput planning{scene, world, lights, fewest_samples(plan.groups.size())};
+  const PlanningInput planning{scene, world, lights, fewest_samples(plan.groups.size()), reference};
   for (BodyPlan& group : plan.groups) {
     // Fitted for homogeneous media.
     const bool varies = varies_inside(scene.media[group.medium]) &&

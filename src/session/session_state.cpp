@@ -55,7 +55,7 @@ void Session::State::edit(Scene scene) {
   for (const Light& light : scene.lights)
     if (is_of_shape(light)) emitters.push_back(light_in_world(scene, *world, light));
   choose_models(scene, *world, reference_);
-  Plan plan = make_plan(scene, *world);
+  Plan plan = make_plan(scene, *world, reference_);
   scene_ = std::move(scene);
   if (world != world_) bounced_.reset();
   world_ = std::move(world);

@@ -24,6 +24,8 @@ struct PlanningInput {
   const World& world;
   std::span<const Light> lights;  ///< recentred
   double fewest_samples;          ///< fewest samples of a body
+  std::span<const BodyPlan> reference =
+      {};  ///< bodies of another frame; bodies of the same names use their methods
 };
 
 /// Expected memory of a body, bytes.

@@ -136,6 +136,34 @@ TEST(AutomaticMethod, LayersHaveOneMethodAtAllWavelengths) {
   }
 }
 
+// Claim: the frames of an anchored session use the method of the reference frame, or warn. Source: session.h. Fails if: each frame
+// chooses by its own mesh, and light jumps.
+TEST(AutomaticMethod, FramesUseTheMethodOfTheReferenceFrame) {
+  const auto frame = [](std::string_view shape) {
+    return parse_scene(fmt::format(R"({{"media": {{"m": {{"preset": "marble"}}}},
+      "shapes": [{{"name": "b", {}, "medium": "m"}}], "lights": [{{"type": "point", "position": [0, 90, 0], "intensity": 900}}]}})",
+                                   shape),
+                       "frame.json", {});
+  };
+  const Scene open = frame(R"("quad": {"corner": [0, 0, 0], "u": [0, 0, 9], "v": [9, 0, 0]})"),
+              closed = frame(R"("sphere": {"radius": 9})");
+  const auto plan_in = [](const Scene& reference, const Scene& scene) {
+    Session session;
+    session.anchor(reference);
+    session.edit(scene);
+    return session.plan();
+  };
+  EXPECT_EQ(chosen(closed), std::vector{Method::volume_diffusion});
+  const BodyPlan kept = plan_in(open, closed).groups.at(0);
+  EXPECT_EQ(kept.method, Method::hierarchical);
+  EXPECT_TRUE(kept.reason_against_method.starts_with("as in the reference frame: its mesh is open"));
+  EXPECT_EQ(plan_in(closed, closed).groups.at(0).method, Method::volume_diffusion);
+  const Plan changed = plan_in(closed, open);
+  EXPECT_TRUE(std::ranges::any_of(changed.warnings, [](const std::string& text) {
+    return text.find("uses volume_diffusion in the reference frame") != std::string::npos;
+  }));
+}
+
 // Claim: a session keeps cells that suit an edited medium, and its samples and shadow rays with them; it cuts the surface anew
 // for cells too wide or too narrow, for another cell_size, and to match a new session. Source: keep_cells. Fails if: each
 // edit of a medium cuts the surface (medium x 1.05), or wide cells stay in a dense medium (x 2).

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <variant>
 
 #include "diffusion/diffuse_profile.h"
@@ -40,6 +41,23 @@ std::string reason_against_cells(const Scene& scene, const World& world, const B
         "that scale",
         kMostCells / 1e6, widest_cell(scene.settings));
   return {};
+}
+
+constexpr std::string_view kAsInReference = "as in the reference frame: ";
+
+/// The body in the reference frame, or null.
+const BodyPlan* reference_of(const PlanningInput& input, const BodyPlan& body) {
+  const auto found = std::ranges::find_if(input.reference, [&](const BodyPlan& other) {
+    return other.name == body.name && other.shared == body.shared;
+  });
+  return found == input.reference.end() ? nullptr : &*found;
+}
+
+/// Why the reference frame uses no cells; empty: it does, or there is none.
+std::string reason_in_reference(const BodyPlan* reference) {
+  if (reference == nullptr || reference->reason_against_method.empty()) return {};
+  const std::string& reason = reference->reason_against_method;
+  return reason.starts_with(kAsInReference) ? reason : std::string(kAsInReference) + reason;
 }
 
 /// Warns if closing the mesh would make cells applicable to the body.
@@ -85,9 +103,17 @@ double seconds_of_entry(const Medium& medium, const BodyPlan& body) {
 
 void VolumeDiffusionMethod::plan(const PlanningInput& input, BodyPlan& body,
                                  std::vector<std::string>& warnings) const {
+  const BodyPlan* const reference = reference_of(input, body);
   body.reason_against_method = reason_against_cells(input.scene, input.world, body);
   if (!body.reason_against_method.empty()) {
     warn_of_open_mesh(input.scene, body, warnings);
+    if (reference != nullptr && reference->method == Method::volume_diffusion)
+      warnings.push_back(body.name +
+                         ": uses volume_diffusion in the reference frame, so the frames look different");
+  } else {
+    body.reason_against_method = reason_in_reference(reference);
+  }
+  if (!body.reason_against_method.empty()) {
     body.method = Method::hierarchical;
     return method_of(body.method).plan(input, body, warnings);
   }
