@@ -175,9 +175,10 @@ void add_render_options(CLI::App& app, RenderArguments& render, Options& options
                     "## in output and mesh names stands for the frame number; existing frames of the same "
                     "scene are skipped");
   const char* quality = "Quality";
-  app.add_option("--time-budget", options.time_budget,
-                 "choose samples, tolerance and evaluator for the lowest error within this total CPU time, "
-                 "e.g. 2s; direct stops at this time")
+  app.add_option(
+         "--time-budget", options.time_budget,
+         "choose samples, tolerance and evaluator, or cells, for the lowest error within this total CPU "
+         "time, e.g. 2s; direct stops at this time")
       ->transform(seconds_of())
       ->type_name("TIME")
       ->group(quality);

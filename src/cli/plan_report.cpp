@@ -364,27 +364,35 @@ void print_volume_target(const Log& log, double target, const TargetError& chose
 void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,
                   const Settings& settings) {
   const double planned = before + chosen.planned;
+  const bool has_cells = settings.method == Method::volume_diffusion;
   if (!log.quiet) {
     Json members{{"time_budget", budget},
                  {"planned", planned},
                  {"fits", chosen.fits},
                  {"at_most", chosen.at_most},
                  {"sees_translucent", chosen.sees_translucent},
-                 {"samples", chosen.samples},
-                 {"tolerance", settings.tolerance},
-                 {"evaluator", name_of(settings.evaluator)}};
+                 {"samples", chosen.samples}};
+    if (has_cells) {
+      members["cell_size"] = settings.cell_size;
+    } else {
+      members["tolerance"] = settings.tolerance;
+      members["evaluator"] = name_of(settings.evaluator);
+    }
     if (chosen.predicted) members["predicted_error"] = *chosen.predicted;
     print_event(log, "budget", members);
   }
   if (!chosen.sees_translucent)
     return print_warning(log, "no translucent object is visible, so --time-budget has no effect");
-  const std::string error =
-      chosen.predicted ? fmt::format(", predicted error {}", short_percent(*chosen.predicted)) : "";
+  std::string error = chosen.predicted ? ", predicted error " + short_percent(*chosen.predicted) : "";
+  if (has_cells && chosen.predicted) error += " against random walks";
+  const std::string detail = has_cells ? fmt::format("cells of {:.3g} mean free paths", settings.cell_size)
+                                       : "tolerance " + short_percent(settings.tolerance);
+  const char* limit = !chosen.at_most ? ""
+                      : has_cells     ? "; smaller cells would reduce the error little"
+                                      : "; settings.max_samples limits the samples";
   if (!log.quiet && log.format == LogFormat::text)
-    print_row("budget",
-              fmt::format("{:.4g} s: {}{}, tolerance {}; planned {:.3g} s{}", budget,
-                          counted(chosen.samples, "sample"), error, short_percent(settings.tolerance),
-                          planned, chosen.at_most ? "; settings.max_samples limits the samples" : ""));
+    print_row("budget", fmt::format("{:.4g} s: {}, {}{}; planned {:.3g} s{}", budget,
+                                    counted(chosen.samples, "sample"), detail, error, planned, limit));
   if (!chosen.fits)
     print_warning(
         log,

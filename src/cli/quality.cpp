@@ -27,15 +27,32 @@ void check_groups(const Session& session, const char* option) {
                     "no settings.samples in the scene file");
 }
 
+/// The given option of the two; "" for neither.
+const char* option_of(const RenderArguments& render) {
+  return render.target_error ? "--target-error" : render.time_budget ? "--time-budget" : "";
+}
+
+void check_cells(const RenderArguments& arguments) {
+  for (const std::string& text : arguments.overrides)
+    if (text.starts_with("settings.cell_size="))
+      throw bad_usage(fmt::format("{} chooses settings.cell_size itself", option_of(arguments)),
+                      "one of the two", text);
+}
+
 KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   const double before = process_cpu_seconds();
   const Scene scene = session.scene();
-  check_groups(session, "--time-budget");
+  const bool has_cells = scene.settings.method == Method::volume_diffusion;
+  if (has_cells)
+    check_cells(arguments);
+  else
+    check_groups(session, "--time-budget");
   const TimeBudget chosen = stages.run(
       "choosing",
       [&] {
-        return fit_budget(session, scene, budget_left(arguments, scene), trial_writing(arguments, scene.film),
-                          &stages.monitor());
+        return (has_cells ? fit_volume_budget : fit_budget)(session, scene, budget_left(arguments, scene),
+                                                            trial_writing(arguments, scene.film),
+                                                            &stages.monitor());
       },
       InnerStages::trials);
   print_budget(arguments.log, *arguments.time_budget, before, chosen, session.scene().settings);
@@ -43,9 +60,7 @@ KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, 
 }
 
 KnownErrors choose_cells(StageRunner& stages, const RenderArguments& arguments, Session& session) {
-  for (const std::string& text : arguments.overrides)
-    if (text.starts_with("settings.cell_size="))
-      throw bad_usage("--target-error chooses settings.cell_size itself", "one of the two", text);
+  check_cells(arguments);
   const double target = *arguments.target_error;
   const TargetError chosen = stages.run(
       "choosing", [&] { return reach_volume_error(session, session.scene(), target, &stages.monitor()); },
@@ -58,11 +73,6 @@ KnownErrors choose_cells(StageRunner& stages, const RenderArguments& arguments, 
 
 void warn_of_unlit(const Log& log, const char* option) {
   print_warning(log, fmt::format("the scene has no lights, so {} has no effect", option));
-}
-
-/// The given option of the two; "" for neither.
-const char* option_of(const RenderArguments& render) {
-  return render.target_error ? "--target-error" : render.time_budget ? "--time-budget" : "";
 }
 
 void check_budget(const RenderArguments& render) {
@@ -98,7 +108,7 @@ void name_method(const RenderArguments& arguments, Session& session) {
   if (session.scene().settings.method != Method::automatic) return;
   if (!chooses_settings(arguments) && !arguments.verify) return;
   Scene scene = with_named_method(session);
-  if (arguments.time_budget || arguments.verify) scene.settings.method = Method::hierarchical;
+  if (arguments.verify) scene.settings.method = Method::hierarchical;
   session.edit(std::move(scene));
 }
 
@@ -178,16 +188,18 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
     return {};
   }
   const Settings& settings = session.scene().settings;
-  if (arguments.time_budget &&
-      (settings.method == Method::lambert || settings.method == Method::volume_diffusion))
-    throw bad_usage("--time-budget requires hierarchical evaluation or direct",
-                    "--method hierarchical or direct", std::string(name_of(settings.method)));
+  if (arguments.time_budget && settings.method == Method::lambert)
+    throw bad_usage("--time-budget requires hierarchical evaluation, volume_diffusion or direct",
+                    "--method hierarchical, volume_diffusion or direct",
+                    std::string(name_of(settings.method)));
   if (arguments.time_budget && settings.method == Method::volume)
     throw bad_usage("--time-budget cannot stop random walks", "--until-error, and --resume to continue later",
                     "volume");
   const bool hierarchical = settings.method == Method::hierarchical;
-  if (settings.method == Method::volume_diffusion && arguments.target_error && !arguments.verify)
-    return choose_cells(stages, arguments, session);
+  if (settings.method == Method::volume_diffusion && !arguments.verify) {
+    if (arguments.target_error) return choose_cells(stages, arguments, session);
+    if (arguments.time_budget) return fit_settings(stages, arguments, session);
+  }
   if (!hierarchical && (arguments.target_error || arguments.verify))
     throw bad_usage(arguments.target_error
                         ? "--target-error requires hierarchical evaluation or volume_diffusion"

@@ -8,14 +8,12 @@
 #include "quality/probe.h"
 #include "quality/settings_search.h"
 #include "quality/target_error.h"
+#include "quality/volume_cells.h"
 #include "volume/volume_diffusion.h"
 
 namespace opaline {
 namespace {
 
-// Largest ratio of actual to expected model error, over the bodies of bench_volume_models.
-constexpr double kModelSafety = 1.4;
-constexpr double kThinnest = 3;  // mean free paths; bench_volume_models has no thinner body
 // Least fraction for cells, samples and shadow rays if the model error uses all of the target: 4 % of the
 // promise.
 constexpr double kLeastShare = .3;
@@ -23,27 +21,6 @@ constexpr double kCoarsest = 3, kFinest = .25;  // cells, mean free paths
 constexpr double kMargin = .85;                 // margin of the target error: two steps cost more than one
 constexpr int kMostSteps = 6, kMostLightSamples = 4096;
 constexpr double kQuickCells = 3e5;  // solved in about a second
-
-/// Model error of the worst body; none if a mesh is open, crossed by light almost without scattering, or too
-/// large for cells.
-std::optional<double> model_error(const Plan& plan) {
-  double worst = 0;
-  for (const BodyPlan& group : plan.groups) {
-    if (group.method != Method::volume_diffusion || !group.model.expected_error_of_diffusion ||
-        group.thickness < kThinnest * group.smallest_mean_free_path)
-      return {};
-    worst = std::max(worst, kModelSafety * *group.model.expected_error_of_diffusion);
-  }
-  return worst;
-}
-
-/// Edge of the smallest cells of all bodies, mm.
-double smallest_cell(const Plan& plan) {
-  double smallest = INFINITY;
-  for (const BodyPlan& group : plan.groups)
-    if (group.method == Method::volume_diffusion) smallest = std::min(smallest, group.cell);
-  return smallest;
-}
 
 double all_cells(const Plan& plan) {
   double cells = 0;
@@ -121,7 +98,7 @@ class VolumeSearch {
 Scene with_named_method(const Session& session) {
   Scene scene = session.scene();
   if (scene.settings.method != Method::automatic) return scene;
-  const bool is_promised = !session.plan().groups.empty() && model_error(session.plan());
+  const bool is_promised = !session.plan().groups.empty() && bounded_model_error(session.plan());
   scene.settings.method = is_promised ? Method::volume_diffusion : Method::hierarchical;
   return scene;
 }
@@ -138,14 +115,15 @@ TargetError reach_volume_error(Session& session, Scene scene, double target, Mon
     session.edit(std::move(scene));
     return result;
   }
-  result.model = model_error(search.plan());
+  result.model = bounded_model_error(search.plan());
   const double model = result.model.value_or(0),
                promised = std::max(target, std::hypot(1, kLeastShare) * model),
                left = std::sqrt(promised * promised - model * model);
-  double cells = kCoarsest;
+  double cells = std::min(kCoarsest, smallest_cell_size(search.plan()));
   for (int step = 0; step < kMostSteps && search.estimated() > left && cells > kFinest; ++step) {
     cells = std::max(kFinest, cells * std::min(.9, kMargin * left / search.estimated()));
     if (!search.try_cells(cells)) break;
+    cells = smallest_cell_size(search.plan());
   }
   search.settle_light(.5 * left);
   result.predicted = std::hypot(model, search.estimated());

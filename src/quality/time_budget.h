@@ -13,12 +13,13 @@ namespace opaline {
 
 /// Chosen settings and their expected cost and error.
 struct TimeBudget {
-  std::optional<double> predicted;  ///< error as in TargetError; none: too little time for an estimate
-  std::size_t samples = 0;          ///< requested, of all bodies
-  double planned = 0;               ///< CPU from the call to the end of `finish`, s
-  bool fits = true;                 ///< false: the cheapest settings exceed the time
-  bool at_most = false;             ///< limited by settings.max_samples: more time would not help
-  bool sees_translucent = true;     ///< false: no settings to choose
+  std::optional<double>
+      predicted;            ///< error as in TargetError; none: unknown, or too little time for an estimate
+  std::size_t samples = 0;  ///< requested, of all bodies
+  double planned = 0;       ///< CPU from the call to the end of `finish`, s
+  bool fits = true;         ///< false: the cheapest settings exceed the time
+  bool at_most = false;     ///< limited by settings.max_samples or the model: more time would not help
+  bool sees_translucent = true;  ///< false: no settings to choose
 };
 
 /// Work of the caller on a finished image, such as writing it; timed on small images with the same layers.
@@ -36,6 +37,12 @@ using FinishPicture = std::function<void(const Image& picture)>;
 /// error as Session::edit and Session::prepare, and finish's
 TimeBudget fit_budget(Session& session, Scene scene, double seconds, const FinishPicture& finish,
                       Monitor* monitor = nullptr);
+
+/// The same for Method::volume_diffusion: cells as small as fit into the time, unless the error of the model exceeds
+/// theirs by far. Predicts the error against random walks.
+/// in    scene: volume_diffusion; its cell_size is replaced
+TimeBudget fit_volume_budget(Session& session, Scene scene, double seconds, const FinishPicture& finish,
+                             Monitor* monitor = nullptr);
 
 /// render_direct with as many passes as fit into the CPU time of it and finish, limited by
 /// Settings::entry_samples and Settings::until_error if set; at least one. The same number of entry samples

@@ -94,7 +94,7 @@ std::string closing_line(const std::string& out, const std::string& label) {
   return at == std::string::npos ? "" : out.substr(at + 1, out.find('\n', at + 1) - at - 1);
 }
 
-// Claim: --target-error replaces `auto` by the method of all bodies, --time-budget and --verify by hierarchical; the command
+// Claim: --target-error and --time-budget replace `auto` by the method of all bodies, --verify by hierarchical; the command
 // under "repeat with" names it. Source: quality.h. Fails if: settings are chosen for `auto`, which has none of its own, or the
 // repeated image is by another method.
 TEST(CliQuality, AChoiceNamesTheMethodOfAuto) {
@@ -111,7 +111,8 @@ TEST(CliQuality, AChoiceNamesTheMethodOfAuto) {
   const std::string profile = repeated({"--target-error", "9%", "--set", "media.marble.profile=dipole"});
   EXPECT_TRUE(contains(profile, "settings.method=hierarchical")) << profile;
   const std::string budget = repeated({"--time-budget", "1s"});
-  EXPECT_TRUE(contains(budget, "settings.method=hierarchical")) << budget;
+  EXPECT_TRUE(contains(budget, "settings.method=volume_diffusion") && contains(budget, "settings.cell_size="))
+      << budget;
 }
 
 // Claim: the closing lines state the predicted and the measured error, the CPU of the whole table against the
@@ -183,6 +184,8 @@ TEST_P(CliAgainBy, RunsAsPrinted) {
 INSTANTIATE_TEST_SUITE_P(Options, CliAgainBy,
                          testing::Values(Choosing{"TimeBudget", {"--time-budget", "1.5"}},
                                          Choosing{"TargetError", {"--target-error", ".02"}},
+                                         Choosing{"TimeBudgetOfTheVolume",
+                                                  {"--time-budget", "1.5", "--method", "volume_diffusion"}},
                                          Choosing{"TargetErrorOfTheVolume",
                                                   {"--target-error", ".3", "--method", "volume_diffusion"}}),
                          [](const auto& choosing) { return choosing.param.name; });
@@ -206,7 +209,7 @@ TEST(CliQuality, BudgetOfTwoGroupsIsRepeatedInSceneUnits) {
                {"name": "b", "sphere": {"center": [1, 0, 0], "radius": 0.5}, "medium": "marble"}],
     "lights": [{"type": "point", "position": [2, 3, 4], "intensity": 1000}],
     "camera": {"position": [0, 0, 7]}, "film": {"resolution": [64, 64]}})");
-  ASSERT_EQ(folder.render({"--time-budget", "1s", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(folder.render({"--time-budget", "1s", "--method", "hierarchical", "--quiet"}).exit_code, 0);
   const std::string command = metadata_of(folder.file("a.exr"), "opaline:command");
   std::vector<std::string> repeat;
   std::istringstream words(command.substr(command.find("--set")));
@@ -215,7 +218,8 @@ TEST(CliQuality, BudgetOfTwoGroupsIsRepeatedInSceneUnits) {
   ASSERT_EQ(folder.render(repeat, "b.exr").exit_code, 0) << command;
   EXPECT_TRUE(
       std::ranges::equal(read_image(folder.file("a.exr")).pixels, read_image(folder.file("b.exr")).pixels));
-  const Outcome own = folder.render({"--time-budget", "1s", "--set", "settings.max_samples=100000"});
+  const Outcome own = folder.render(
+      {"--time-budget", "1s", "--method", "hierarchical", "--set", "settings.max_samples=100000"});
   EXPECT_EQ(own.exit_code, 0) << own.err;
 }
 
@@ -295,7 +299,9 @@ TEST(CliQuality, SenselessOptionsAreErrors) {
       {{"--time-budget", "1s", "--set", "settings.samples=100"}, "chooses settings.samples itself"},
       {{"--time-budget", "1s", "--cache", "stages"}, "--cache"},
       {{"--time-budget", "1s", "--samples-ply", "a.ply"}, "does not plan for --samples-ply"},
-      {{"--time-budget", "1s", "--method", "lambert"}, "--method hierarchical or direct"},
+      {{"--time-budget", "1s", "--method", "lambert"}, "--method hierarchical, volume_diffusion or direct"},
+      {{"--time-budget", "1s", "--method", "volume_diffusion", "--set", "settings.cell_size=1"},
+       "--time-budget chooses settings.cell_size itself"},
       {{"--time-budget", "1s", "--evaluator", "classic"}, "classic"}};
   for (const auto& [options, expected] : senseless) {
     const Outcome outcome = folder.render(options);
