@@ -6,37 +6,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "bodies/opaque_inside.h"
 #include "core/random.h"
-#include "geometry/follow_ray.h"
 #include "scene/names.h"
 #include "subsurface/method.h"
 
 namespace opaline {
 namespace {
 
-constexpr std::size_t kTested = 64;                         // points per shape
-constexpr std::size_t kMostPairs = 1'000'000;               // bodies times shapes
-constexpr std::size_t kMostTriangles = 5'000'000;           // sum over tested pairs
-constexpr std::size_t kMostNamed = 3;                       // pairs
-const Vec3d kDirection = normalized(Vec3d{.31, .87, .39});  // along no axis
+constexpr std::size_t kTested = 64;                // points per shape
+constexpr std::size_t kMostPairs = 1'000'000;      // bodies times shapes
+constexpr std::size_t kMostTriangles = 5'000'000;  // sum over tested pairs
+constexpr std::size_t kMostNamed = 3;              // pairs
 
 bool is_of(const BodyPlan& body, std::size_t mesh) {
   return std::ranges::find(body.meshes, mesh) != body.meshes.end();
-}
-
-/// True if a ray from the point leaves the body once more often than it enters.
-bool is_inside(const RayScene& rays, const BodyPlan& body, const Vec3d& point) {
-  int crossed = 0;
-  follow_ray(rays, point, kDirection, std::numeric_limits<double>::infinity(), [&](const TracedRay& traced) {
-    if (is_of(body, traced.hit.mesh)) crossed += leaves(traced.hit, kDirection) ? 1 : -1;
-    return true;
-  });
-  return crossed > 0;
 }
 
 /// The part of a convex polygon in a box.
@@ -88,16 +76,6 @@ std::vector<Vec3d> points_below(const Mesh& mesh, const Bounds& box, double dept
   return points;
 }
 
-/// Some vertices of a mesh in a box.
-std::vector<Vec3d> vertices_in(const Mesh& mesh, const Bounds& box) {
-  std::vector<Vec3d> all, some;
-  for (const Vec3d& p : mesh.positions)
-    if (min_component(p - box.low) > 0 && min_component(box.high - p) > 0) all.push_back(p);
-  for (std::size_t i = 0; i < all.size(); i += std::max(all.size() / kTested, std::size_t{1}))
-    some.push_back(all[i]);
-  return some;
-}
-
 class ShapesInside {
  public:
   ShapesInside(const Scene& scene, const World& world, const RayScene& rays, const Plan& plan)
@@ -114,8 +92,13 @@ class ShapesInside {
       Bounds box = bounds(world_, body.meshes);
       const Vec3d margin = (box.high - box.low) * 1e-5;  // surfaces that touch
       box = {box.low + margin, box.high - margin};
-      for (std::size_t other = 0; other < world_.meshes.size(); ++other)
-        if (!is_of(body, other) && meet(box, boxes_[other])) test(i, box, other);
+      const std::vector<std::uint32_t> absorbing = body.method == Method::volume_diffusion
+                                                       ? opaque_inside(scene_, world_, rays_, body)
+                                                       : std::vector<std::uint32_t>{};
+      for (std::uint32_t other = 0; other < world_.meshes.size(); ++other)
+        if (!is_of(body, other) && meet(box, boxes_[other]) &&
+            std::ranges::find(absorbing, other) == absorbing.end())
+          test(i, box, other);
     }
     if (count_ > kMostNamed)
       warnings_.push_back(fmt::format("{}{} more shapes lie inside or overlap bodies",
@@ -124,7 +107,7 @@ class ShapesInside {
   }
 
  private:
-  void test(std::size_t i, const Bounds& box, std::size_t other) {
+  void test(std::size_t i, const Bounds& box, std::uint32_t other) {
     const BodyPlan& body = plan_.groups[i];
     if (body_of_[other] && named_.contains(std::minmax(i, *body_of_[other]))) return;
     if (triangles_ > kMostTriangles) return;
@@ -139,21 +122,22 @@ class ShapesInside {
   }
 
   const char* way_out(const BodyPlan& body, std::size_t other) const {
-    if (!body_of_[other]) return "--method volume does not";
+    if (!body_of_[other])
+      return body.method == Method::volume_diffusion ? "close its mesh, or use --method volume"
+                                                     : "--method volume and volume_diffusion do not";
     return scene_.shapes[other].medium == body.medium ? "put both into one group, or move them apart"
                                                       : "no method mixes media; move them apart";
   }
 
-  /// True if the points of the shape inside the body span a considerable part of it. The surface of another body is
-  /// tested, but vertices of opaque shapes: a body sunk into a large floor is usual.
-  bool reaches_inside(const BodyPlan& body, const Bounds& box, std::size_t other) const {
-    constexpr double kConsiderable = .2;  // fraction of the diagonal, more than the stem of an apple
+  /// True if a considerable part of the shape is inside the body. The surface of another body is tested, but vertices of
+  /// opaque shapes: a body sunk into a large floor is usual.
+  bool reaches_inside(const BodyPlan& body, const Bounds& box, std::uint32_t other) const {
+    if (!body_of_[other]) return has_vertices_inside(world_, rays_, body, other);
+    constexpr double kConsiderable = .2;  // fraction of the diagonal
     constexpr double kDepth = .005;       // the same; bodies overlapping less are in contact
     const double diagonal = length(box.high - box.low);
-    const Mesh& mesh = world_.meshes[other];
     Bounds inside;
-    for (const Vec3d& point :
-         body_of_[other] ? points_below(mesh, box, kDepth * diagonal) : vertices_in(mesh, box))
+    for (const Vec3d& point : points_below(world_.meshes[other], box, kDepth * diagonal))
       if (is_inside(rays_, body, point)) widen(inside.low, inside.high, point);
     return inside.low.x <= inside.high.x && length(inside.high - inside.low) > kConsiderable * diagonal;
   }

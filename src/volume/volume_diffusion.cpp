@@ -19,7 +19,7 @@ BodyMedia calibrated(const VolumeDiffusionInput& input) {
   for (std::size_t c = 0; c < 3; ++c) body.throughout[0][c] = CalibratedMedium(media[c]);
   if (!input.media_inside) return body;
   body.inside = input.media_inside;
-  if (!input.has_layers) body.calibrations = calibrations_of(media[0].eta);
+  if (!input.is_calibrated) body.calibrations = calibrations_of(media[0].eta);
   return body;
 }
 

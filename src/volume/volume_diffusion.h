@@ -25,7 +25,7 @@ struct VolumeDiffusionInput {
   std::array<HomogeneousMedium, 3> media;  ///< R G B, isotropic, in the world's unit of length
   double cell = 1;                         ///< edge of the cells at the surface, world units
   MediaInside media_inside = {};           ///< isotropic; replaces `media`. Empty: homogeneous
-  bool has_layers = false;                 ///< media_inside: layers, with the boundary calibrated to `media`
+  bool is_calibrated = false;              ///< media_inside: with the boundary of `media`, as of layers
 };
 
 /// Minimum length to resolve, over the diffuse mean free path; src/volume/README.md.

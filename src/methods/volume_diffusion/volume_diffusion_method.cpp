@@ -7,8 +7,10 @@
 #include <array>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "bodies/local_media.h"
+#include "bodies/opaque_inside.h"
 #include "bodies/surface_textures.h"
 #include "input/settings_table.h"
 #include "methods/volume/cell_field.h"
@@ -54,9 +56,14 @@ VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::
       reduced.mean_free_path *= least / length;
     return isotropic_medium(reduced);
   };
-  return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, normals,
-                          isotropic_media(body.profile), cell,
-                          media_inside(input, body, CubeCentre::inside, resolved), has_layers});
+  const std::array<HomogeneousMedium, 3> media = isotropic_media(body.profile);
+  MediaInside inside = media_inside(input, body, CubeCentre::inside, resolved);
+  const bool is_varying = bool(inside);
+  std::vector<std::uint32_t> opaque = opaque_inside(input.scene, input.world, input.rays, body.plan);
+  if (!opaque.empty())
+    inside = with_opaque_shapes(input.world, input.rays, std::move(opaque), std::move(inside), media);
+  return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, normals, media, cell,
+                          std::move(inside), has_layers || !is_varying});
 }
 
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
@@ -71,6 +78,9 @@ StageKey cells_key(const BodyStages& stages) {
   key.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
   if (medium_inside != StageKey{}) key.add(medium_inside);
   for (const std::uint32_t mesh : body.plan.meshes) key.add(stages.mesh_keys[mesh].shape);
+  for (const std::uint32_t mesh :
+       opaque_inside(stages.input.scene, stages.input.world, stages.input.rays, body.plan))
+    key.add("opaque").add(stages.mesh_keys[mesh].shape);
   return key.key();
 }
 
