@@ -15,9 +15,9 @@ namespace opaline {
 namespace {
 
 constexpr double kWidest = 3, kFinest = .25;  // cells, mean free paths
-constexpr double kErrorOrder = 1.2;           // of the error in the size of the cells
+constexpr double kErrorOrder = 1.2;           // order of the error in the size of the cells
 constexpr double kOfModel = .1;        // error of cells over that of the model: smaller ones hardly help
-constexpr double kOfTrial = .15;       // of the time that is left
+constexpr double kOfTrial = .15;       // share of the remaining time
 constexpr double kWorthSolving = .85;  // largest ratio of new to existing cells
 constexpr double kUsualPower = 2.2, kLeastPower = 1.5, kMostPower = 3.3;  // order of the cost in 1 / cell
 constexpr std::size_t kEnoughPoints = 1000;
@@ -33,7 +33,7 @@ class VolumeBudgetSearch {
   Scene take() { return std::move(search_.scene); }
 
  private:
-  /// Solved cells, of the largest body.
+  /// Solved cells: the smallest of all bodies.
   struct Solved {
     double cell = 0;     ///< mm
     double seconds = 0;  ///< CPU of preparing the bodies

@@ -50,7 +50,7 @@ struct DiffusionSpace {
     return media[varies() ? cell : 0];
   }
   double eta() const { return media[0][0].eta; }
-  /// False for a sliver, whose plane says little about the surface around it.
+  /// False for a sliver: its plane says little about the surface around it.
   bool is_wide(std::uint32_t element) const {
     constexpr double kLeastArea = .2;  // faces of a cell
     return double(boundary.elements[element].area) > kLeastArea * lattice.cell * lattice.cell;
