@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/repair_mesh.h"
 
-// Before CGAL's headers: functions that they declare in boost::detail would hide those for pointers.
+// Before CGAL's headers: their functions in boost::detail would hide those for pointers.
 #include <boost/pending/disjoint_sets.hpp>
 //
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -28,7 +28,7 @@ using Halfedge = OpenMesh::HalfedgeHandle;
 // Number of a hole's edges up to which all triangulations are compared, in cubic time. The faster search
 // within a Delaunay tetrahedralization breaks ties by addresses, so its result is not reproducible.
 constexpr std::size_t largest_cubic_hole = 500;
-// Number of edges up to which a fan replaces a triangulation that CGAL does not find.
+// Number of edges up to which a fan replaces a triangulation not found by CGAL.
 constexpr std::size_t kFewEdges = 8;
 
 /// Edges that hang together, around one hole or several that touch.

@@ -16,7 +16,7 @@ std::string_view profile_meaning() {
   return text;
 }
 
-/// Row of a value that may be a texture, with its two members.
+/// Row of a number or texture, with its two members.
 template <auto kValue, auto kTexture>
 MediumRow textured(KeyInfo info) {
   return {textured(std::move(info)),

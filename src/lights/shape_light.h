@@ -33,7 +33,7 @@ inline std::optional<SphereLight> sampled_ball(const ShapeLight& light, const Ve
   return SphereLight{surface.center(), surface.radius(), {}};
 }
 
-/// Shadow rays end before the surface, which would block those at grazing angles.
+/// Shadow rays end before the surface: it would block those at grazing angles.
 /// distance: to the surface; cosine: with its normal there
 inline float cleared(const EmittingSurface& surface, double distance, double cosine) {
   constexpr double kMostCleared = .5;  // part of the distance

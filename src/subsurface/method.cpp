@@ -10,7 +10,7 @@ namespace opaline {
 
 namespace {
 
-/// True for a built-in convex shape, which no light enters again.
+/// True for a built-in convex shape: no light enters it again.
 bool is_convex(const Scene& scene, const BodyPlan& body) {
   if (body.meshes.size() != 1) return false;
   const auto& source = scene.shapes[body.meshes[0]].source;
