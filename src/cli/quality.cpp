@@ -50,9 +50,8 @@ KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, 
   const TimeBudget chosen = stages.run(
       "choosing",
       [&] {
-        return (has_cells ? fit_volume_budget : fit_budget)(session, scene, budget_left(arguments, scene),
-                                                            trial_writing(arguments, scene.film),
-                                                            &stages.monitor());
+        return fit_budget(session, scene, budget_left(arguments, scene), trial_writing(arguments, scene.film),
+                          &stages.monitor());
       },
       InnerStages::trials);
   print_budget(arguments.log, *arguments.time_budget, before, chosen, session.scene().settings);

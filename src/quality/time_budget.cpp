@@ -13,6 +13,7 @@
 #include "quality/picture_cost.h"
 #include "quality/probe.h"
 #include "quality/settings_search.h"
+#include "quality/volume_budget.h"
 
 namespace opaline {
 namespace {
@@ -259,9 +260,15 @@ TimeBudget BudgetSearch::run(const FinishPicture& finish) {
 
 TimeBudget fit_budget(Session& session, Scene scene, double seconds, const FinishPicture& finish,
                       Monitor* monitor) {
-  BudgetSearch search(session, scene, seconds, monitor);
-  TimeBudget result = search.run(finish);
-  session.edit(result.sees_translucent ? search.chosen() : std::move(scene));
+  TimeBudget result;
+  if (scene.settings.method == Method::volume_diffusion) {
+    result = fit_cells(session, scene, seconds, finish, monitor);
+  } else {
+    BudgetSearch search(session, scene, seconds, monitor);
+    result = search.run(finish);
+    if (result.sees_translucent) scene = search.chosen();
+  }
+  session.edit(std::move(scene));
   for (const BodyPlan& group : session.plan().groups) result.samples += group.samples;
   return result;
 }

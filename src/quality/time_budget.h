@@ -29,7 +29,10 @@ using FinishPicture = std::function<void(const Image& picture)>;
 /// system) of prepare, render and finish, a tolerance matching the error, and the better evaluator if the
 /// scene leaves it open. Predicts costs from a few small images, tiles of the full one, and small files.
 /// Shadow rays and the film remain the scene's. The choice depends on the clock.
-/// in    scene: hierarchical, evaluator not classic; its samples, sample_spacing and tolerance are replaced;
+/// With volume_diffusion, chooses cells as small as fit into the time, unless the error of the model exceeds theirs by far,
+/// and predicts the error against random walks.
+/// in    scene: hierarchical, evaluator not classic; its samples, sample_spacing and tolerance are replaced; or
+///       volume_diffusion; its cell_size is replaced;
 ///       session: without a cache, whose hits would cost nothing; seconds: CPU from this call to the end of
 ///       finish, > 0
 /// out   prepare, render and finish then take at most 110 % of it in about 95 % of cases, unless `fits` is
@@ -37,12 +40,6 @@ using FinishPicture = std::function<void(const Image& picture)>;
 /// error as Session::edit and Session::prepare, and finish's
 TimeBudget fit_budget(Session& session, Scene scene, double seconds, const FinishPicture& finish,
                       Monitor* monitor = nullptr);
-
-/// The same for Method::volume_diffusion: cells as small as fit into the time, unless the error of the model exceeds
-/// theirs by far. Predicts the error against random walks.
-/// in    scene: volume_diffusion; its cell_size is replaced
-TimeBudget fit_volume_budget(Session& session, Scene scene, double seconds, const FinishPicture& finish,
-                             Monitor* monitor = nullptr);
 
 /// render_direct with as many passes as fit into the CPU time of it and finish, limited by
 /// Settings::entry_samples and Settings::until_error if set; at least one. The same number of entry samples

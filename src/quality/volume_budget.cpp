@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells of volume_diffusion for a CPU time.
+#include "quality/volume_budget.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,7 +9,6 @@
 #include "quality/picture_cost.h"
 #include "quality/settings_search.h"
 #include "quality/target_error.h"
-#include "quality/time_budget.h"
 #include "quality/volume_cells.h"
 
 namespace opaline {
@@ -133,12 +133,11 @@ TimeBudget VolumeBudgetSearch::run(const FinishPicture& finish) {
 
 }  // namespace
 
-TimeBudget fit_volume_budget(Session& session, Scene scene, double seconds, const FinishPicture& finish,
-                             Monitor* monitor) {
+TimeBudget fit_cells(Session& session, Scene& scene, double seconds, const FinishPicture& finish,
+                     Monitor* monitor) {
   VolumeBudgetSearch search(session, scene, seconds, monitor);
-  TimeBudget result = search.run(finish);
-  session.edit(result.sees_translucent ? search.take() : std::move(scene));
-  for (const BodyPlan& group : session.plan().groups) result.samples += group.samples;
+  const TimeBudget result = search.run(finish);
+  if (result.sees_translucent) scene = search.take();
   return result;
 }
 

@@ -192,7 +192,7 @@ TEST(TimeBudget, CellsFitIntoTheTime) {
   const auto fitted = [&](double seconds, double& spent) {
     Session session;
     const Stopwatch watch;
-    const TimeBudget chosen = fit_volume_budget(session, scene, seconds, [](const Image&) {});
+    const TimeBudget chosen = fit(session, scene, seconds);
     session.render();
     spent = watch.cost({}).cpu_seconds;
     EXPECT_TRUE(chosen.sees_translucent && chosen.predicted);
