@@ -2,13 +2,16 @@
 #include "cli/quality.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "cli/render_outputs.h"
 #include "core/atomic_file.h"
+#include "core/units.h"
 #include "input/load_scene.h"
 #include "opaline/error.h"
+#include "plan/expected_error.h"
 #include "scene/names.h"
 
 namespace opaline {
@@ -92,6 +95,18 @@ void check_budget(const RenderArguments& render) {
     if (given) throw bad_usage(fmt::format("--time-budget does not plan for {}", option), "one of the two");
 }
 
+/// Warns if the target of radial profiles leaves out their model error.
+void warn_of_model(const Log& log, const Plan& plan) {
+  const std::vector<std::string> unknown = bodies_of_unknown_error(plan);
+  const std::optional<double> expected = expected_model_error(plan);
+  if (plan.groups.empty() || plan.groups[0].method == Method::volume_diffusion) return;
+  print_warning(log,
+                fmt::format("--target-error leaves out the error of the model against --method volume: {}",
+                            !unknown.empty() ? fmt::format("unknown for {}", fmt::join(unknown, ", "))
+                            : expected       ? "about " + short_percent(*expected)
+                                             : std::string("unknown")));
+}
+
 }  // namespace
 
 void check_quality(const RenderArguments& render) {
@@ -109,6 +124,7 @@ void name_method(const RenderArguments& arguments, Session& session) {
   Scene scene = with_named_method(session);
   if (arguments.verify) scene.settings.method = Method::hierarchical;
   session.edit(std::move(scene));
+  if (arguments.target_error && !arguments.verify) warn_of_model(arguments.log, session.plan());
 }
 
 bool chooses_settings(const RenderArguments& arguments) {

@@ -96,13 +96,15 @@ std::string closing_line(const std::string& out, const std::string& label) {
 
 // Claim: --target-error and --time-budget replace `auto` by the method of all bodies, --verify by hierarchical; the command
 // under "repeat with" names it. Source: quality.h. Fails if: settings are chosen for `auto`, which has none of its own, or the
-// repeated image is by another method.
+// repeated image is by another method, or a target without the error of the model is silent.
 TEST(CliQuality, AChoiceNamesTheMethodOfAuto) {
   const SceneFolder folder;
   const auto repeated = [&](std::vector<std::string> words) {
     words.insert(words.begin(), {"render", folder.scene, "-o", folder.file("a.exr"), "--method", "auto"});
     const Outcome outcome = run_program(words);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const bool has_model_error = !contains(outcome.err, "--target-error leaves out the error of the model");
+    EXPECT_EQ(has_model_error, !contains(outcome.out, "settings.method=hierarchical")) << outcome.err;
     return outcome.out.substr(std::min(outcome.out.find("repeat with"), outcome.out.size()));
   };
   const std::string cells = repeated({"--target-error", "9%"});
