@@ -148,7 +148,10 @@ Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::
     if (!batch.bounced_further.empty() && !bounced.empty()) write_further(hits, bounced, batch);
     if (field.asks_samples()) result.queries += hits.points.size();
     if (shows_fuzz) add_fuzz(hits, boundary, arriving, batch);
-    if (batch.specular == Specular::uniform) add_evenly_mirrored(hits, batch);
+    if (batch.specular == Specular::uniform) {
+      add_evenly_mirrored(hits, batch);
+      if (mirrored_by_bodies_ == MirroredByBodies::of_surfaces) add_mirrored_surfaces(hits, batch);
+    }
     if (batch.specular == Specular::traced && boundary.eta() > 0 && boundary.eta() != 1)
       add_specular(hits, batch, pass, known);
   }

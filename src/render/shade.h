@@ -18,8 +18,9 @@ namespace opaline {
 
 class BouncedLight;
 
-/// Specular reflection of bodies in gathered light: as of a uniform illumination, or none.
-enum class MirroredByBodies { as_uniform, left_out };
+/// Specular reflection of bodies in gathered light: as of a uniform illumination, or of other surfaces alone, without
+/// lights.
+enum class MirroredByBodies { as_uniform, of_surfaces };
 
 class Shader {
  public:
@@ -145,6 +146,7 @@ class Shader {
                                       HeldView::Batch* held = nullptr) const;
   /// Specular reflection without rays, of an irradiance taken as uniform over the hemisphere.
   void add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch) const;
+  void add_mirrored_surfaces(const SurfaceHits& hits, const RayBatch& batch) const;
   float width_at(const RayBatch& batch, std::size_t ray) const;
   bool mirrors_surfaces() const {
     return !met_.emitters.empty() || !met_.surroundings.empty() || input_.scene.shapes.size() > 1;

@@ -155,7 +155,7 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
     const bool is_plain = hits.textures.empty();
     const Appearance textured = is_plain ? Appearance{} : appearance_of(hits, i);
     const Appearance& appearance = is_plain ? appearances_[hits.hits[i].mesh] : textured;
-    const bool is_elsewhere = appearance.translucent && mirrored_by_bodies_ == MirroredByBodies::left_out,
+    const bool is_elsewhere = appearance.translucent && mirrored_by_bodies_ == MirroredByBodies::of_surfaces,
                mirrors = appearance.mirrors() && !is_elsewhere;
     if (!mirrors && !appearance.boundary.has_fuzz()) continue;
     const float cosine = cos_view(hits.points[i], batch.rays[hits.rays[i]].ray.direction);
@@ -180,6 +180,34 @@ void Shader::add_evenly_mirrored(const SurfaceHits& hits, const RayBatch& batch)
     if (mirrors) sample.specular += arriving * appearance.mirrored_share(cosine) * (past_fuzz * past_fuzz);
     if (batch.specular == Specular::uniform) sample.specular += arriving * appearance.fuzz_share(cosine);
   }
+}
+
+// Other surfaces mirrored by bodies, as by smooth ones: one ray from some hits, chosen with the probability of reflection.
+void Shader::add_mirrored_surfaces(const SurfaceHits& hits, const RayBatch& batch) const {
+  constexpr std::uint64_t kChoice = 4950;
+  std::vector<TracedRay> mirrored;
+  std::vector<std::uint64_t> keys;
+  std::vector<std::uint32_t> rays;
+  for (std::size_t i = 0; i < hits.rays.size(); ++i) {
+    const Appearance& appearance = appearances_[hits.hits[i].mesh];
+    if (!appearance.translucent || !appearance.mirrors()) continue;
+    const SurfacePoint& point = hits.points[i];
+    const Vec3f arriving = batch.rays[hits.rays[i]].ray.direction;
+    const float cosine = cos_view(point, arriving), past_fuzz = appearance.boundary.past_fuzz(cosine),
+                likely = appearance.reflectance(cosine) * past_fuzz * past_fuzz;
+    const std::uint64_t key = hash_bits(hits.keys[i], kChoice);
+    const Vec3f along = arriving - point.normal * (2 * dot(arriving, point.normal));
+    if (!(float(unit_double(key)) < likely) || !(dot(along, point.geometric) > 0)) continue;
+    mirrored.push_back(leaving(point, along));
+    keys.push_back(hash_bits(key, 1));
+    rays.push_back(hits.rays[i]);
+  }
+  if (mirrored.empty()) return;
+  input_.rays.intersect(mirrored);
+  std::vector<PixelSample> seen(mirrored.size());
+  shade({.rays = mirrored, .keys = keys, .out = seen, .spread = batch.spread, .specular = Specular::none},
+        {.entry_samples = 1, .is_seen = false});
+  for (std::size_t k = 0; k < rays.size(); ++k) batch.out[rays[k]].specular += seen[k].diffuse;
 }
 
 // Lights without an area are invisible in smooth boundaries.

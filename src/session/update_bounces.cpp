@@ -78,7 +78,7 @@ class DirectlyLitBodies {
 // Bounced light depends on all bodies.
 void Session::State::update_bounces(std::span<BodyStages> bodies) {
   const PrecomputeInput& input = bodies.front().input;
-  KeyBuilder all("bounces", 11);
+  KeyBuilder all("bounces", 12);
   all.add(surfaces_key(input, mesh_keys_, bodies.front().lights));
   for (const Body& body : bodies_) all.add(method_of(body.plan.method).direct_key(body));
   std::vector<StageKey> wanted;
@@ -116,7 +116,7 @@ std::vector<std::vector<RgbF>> Session::State::gathered_bounces(std::span<BodySt
   const std::vector<std::vector<RgbF>> mirrored = mirrored_at_samples(input, bodies_);
   const auto gathered = [&] {
     std::vector<std::vector<RgbF>> light =
-        bounced_at_samples(input, bodies_, MirroredByBodies::left_out, view);
+        bounced_at_samples(input, bodies_, MirroredByBodies::of_surfaces, view);
     for (std::size_t b = 0; b < mirrored.size(); ++b)
       for (std::size_t i = 0; i < mirrored[b].size(); ++i) light[b][i] += mirrored[b][i];
     return light;
