@@ -206,6 +206,7 @@ TEST(AdaptiveRays, LightGroupsRepeatTheRays) {
 // for more than they differ by up to a half. Fails if: the layer is that of the settings alone, or of a sum.
 TEST(AdaptiveRays, ErrorLayerIncludesAntialiasing) {
   Scene scene = balls_before_wall(.1);
+  scene.shapes.pop_back();  // even samples resolve the wall's upright edges far better
   scene.settings.method = Method::hierarchical;
   const RenderResult result = rendered(scene);
   EXPECT_EQ(settings_error(result), result.adaptive.settings_error);
