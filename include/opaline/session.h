@@ -40,7 +40,7 @@ struct RenderResult {
   std::vector<std::uint8_t> translucent;  ///< per pixel: 1 if most of its covered part is translucent
   std::size_t queries = 0;                ///< points with evaluated exitance
   std::size_t non_finite = 0;             ///< pixels of non-finite radiance; 0 unless something is broken
-  AdaptiveRays adaptive = {};             ///< of settings.until_error
+  AdaptiveRays adaptive = {};             ///< camera rays by settings.until_error
 };
 
 /// Mean over the lit pixels of the estimated |error| / max(diffuse, 1e-3 of its p99) from the `error` layer,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points of which any 2^k first ones, and the 2^k after them, cover the unit square evenly.
+// Random points: the first 2^k, and the 2^k after them, cover the unit square evenly.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ constexpr std::uint32_t reversed_bits(std::uint32_t bits) {
   return (bits & 0x55555555u) << 1 | (bits & 0xaaaaaaaau) >> 1;
 }
 
-/// Random permutation in which the bits above a bit decide its flip (Owen scrambling): maps each aligned block of 2^k
+/// Random permutation: the bits above a bit decide its flip (Owen scrambling). It maps each aligned block of 2^k
 /// numbers to such a block.
 /// in    reversed: the number with its bits reversed
 /// from  Burley 2020, Practical Hash-based Owen Scrambling

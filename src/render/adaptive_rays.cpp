@@ -27,7 +27,7 @@ constexpr int kFirstRays = kFewestAdaptiveRays / 2;
 /// area, of the order of 1 / n. Its error is at most the feature itself.
 /// in    around: mean relative variance of the rays of the pixels around
 double unseen_variance(double around, double n) {
-  constexpr double kProbability = 1. / 8;  // of a feature, beside the pixels along an edge
+  constexpr double kProbability = 1. / 8;  // beside the pixels along an edge
   const double missed = kFewestAdaptiveRays / n;
   return std::min(kProbability * missed * missed * around, 1.0) / n;
 }
@@ -75,7 +75,7 @@ void add_squares(RgbF& root, const Rgb& squares) {
     root[c] = float(std::sqrt(double(root[c]) * double(root[c]) + squares[c]));
 }
 
-/// Renders a sequence of rays of each pixel: that of rounds 0 and 1, or that of one later round.
+/// Renders a sequence of rays of each pixel: rounds 0 and 1, or one later round.
 class Sequence {
  public:
   static std::size_t of(int round) { return std::size_t(std::max(0, round - 1)); }
@@ -139,7 +139,7 @@ class Gains {
   /// For pixels without further rays.
   void add_fixed(double variance) { fixed_ += variance; }
 
-  /// Least step whose pixels must continue until the sum of variances is `aim`; each doubling of rays divides a
+  /// Least step of pixels to continue until the sum of variances is `aim`; each doubling of rays divides a
   /// variance by 2^1.5, as at edges. Noise needs more rounds.
   std::size_t least_step(double aim) const {
     std::size_t least = kCount;
@@ -377,7 +377,7 @@ class AdaptiveImage {
 
   /// Renders the next round of the pixels worth it; false: all of these have the most rays.
   bool continue_worst(const RelativeNoise& noise, double until_error) {
-    constexpr double kMargin = .95;  // so that few rounds remain
+    constexpr double kMargin = .95;  // avoids rounds of few pixels
     const std::size_t channel = noise.worst_channel();
     std::vector<double> spread(width_ * std::size_t(part_.y1 - part_.y0));
     for_each([&](std::size_t, std::size_t, std::size_t place, const Pixel& pixel) {
@@ -443,7 +443,7 @@ class AdaptiveImage {
   std::vector<std::vector<Pixel>> pixels_;  // by tile; empty: nothing was hit
   std::vector<int> rounds_of_empty_ = std::vector<int>(tiles_.size());
   std::vector<std::vector<std::uint8_t>> chosen_;  // by tile: 1 + the round to render, or 0
-  std::vector<std::array<double, 3>> factors_;     // by tile: variance over that of independent rays
+  std::vector<std::array<double, 3>> factors_;     // by tile: variance over the one of independent rays
   std::vector<std::unique_ptr<Sequence>> sequences_;
   std::optional<BouncedLight> bounced_;
   std::size_t queries_ = 0;

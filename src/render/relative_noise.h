@@ -17,12 +17,12 @@ class RelativeNoise {
   /// brightest: radiance, by channel
   explicit RelativeNoise(const std::array<double, 3>& brightest) : brightest_(brightest) {}
 
-  /// Square that divides the variance of a pixel; 0: the channel has no light.
+  /// Divisor of the variance of a pixel; 0: the channel has no light.
   double scale(std::size_t channel, double mean) const {
     const double floor = 0.01 * brightest_[channel];
     return brightest_[channel] > 0 ? mean * mean + floor * floor : 0;
   }
-  /// is_lit: false adds the noise of a pixel beside the lit ones, which does not lower the mean
+  /// is_lit: false adds the noise of the pixel alone, not its number
   void add(const RgbF& mean, const Rgb& variance, bool is_lit = true) {
     if (is_lit) ++lit_;
     for (std::size_t c = 0; c < 3; ++c)
