@@ -486,11 +486,10 @@ struct Settings {
   std::size_t max_samples = 2000000;     ///< per group
   int light_samples = 64;                ///< shadow rays per sample (opaque: pixel) and light with an area
   std::optional<std::size_t> entry_samples;  ///< direct: per pixel at most; none: 256, or until until_error
-  std::optional<double>
-      until_error;             ///< direct, volume: stop at this estimated relative error of the pixels, cells
-  bool reenter = true;         ///< volume: enables re-entry of light into a body
-  double cell_size = 2;        ///< volume_diffusion: size of the cells at the surface, mean free paths
-  std::optional<int> bounces;  ///< 1: one bounce of light between surfaces; none: bounces_of()
+  std::optional<double> until_error;  ///< stop at this estimated relative noise of the pixels (volume: cells)
+  bool reenter = true;                ///< volume: enables re-entry of light into a body
+  double cell_size = 2;               ///< volume_diffusion: size of the cells at the surface, mean free paths
+  std::optional<int> bounces;         ///< 1: one bounce of light between surfaces; none: bounces_of()
   std::uint64_t seed = 0;
   int reference_frame = 1;  ///< frame of the samples' placement; in others, they move with the surface
   Laboratory laboratory{};

@@ -2,6 +2,7 @@
 // A session: edits and renders a scene repeatedly, and reuses all valid stage results.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -24,12 +25,22 @@ struct StageCost;
 struct WalkStore;
 struct World;
 
+/// Camera rays of an image by its estimated error.
+struct AdaptiveRays {
+  std::vector<std::uint16_t> rays;  ///< per pixel; empty: film.samples_per_pixel in all
+  double noise = 0;                 ///< estimated relative noise of the radiance, as for settings.until_error
+  bool has_reached_most =
+      false;                  ///< true if the bound of rays per pixel stopped it above settings.until_error
+  double settings_error = 0;  ///< estimated_relative_error without antialiasing
+};
+
 struct RenderResult {
   /// R G B A, diffuse, specular, albedo, N, P, Z, irradiance, error; linear Rec.709, radiance W/(mm^2 sr).
   Image image;
   std::vector<std::uint8_t> translucent;  ///< per pixel: 1 if most of its covered part is translucent
   std::size_t queries = 0;                ///< points with evaluated exitance
   std::size_t non_finite = 0;             ///< pixels of non-finite radiance; 0 unless something is broken
+  AdaptiveRays adaptive = {};             ///< camera rays by settings.until_error
 };
 
 /// Mean over the lit pixels of the estimated |error| / max(diffuse, 1e-3 of its p99) from the `error` layer,
@@ -37,6 +48,9 @@ struct RenderResult {
 /// in    counted: mask of pixels as in RenderResult::translucent; empty or all 0: all pixels
 /// out   within a factor 2 of the measured mean in most scenes at most settings (bench_error_estimate)
 double estimated_relative_error(const Image& image, std::span<const std::uint8_t> counted = {});
+
+/// estimated_relative_error of an image, antialiasing excluded.
+double settings_error(const RenderResult& result);
 
 /// Caches the stage results of the last scene, each with the key of its inputs. The next scene reuses results
 /// with equal keys, looks up the others in the disk cache, and computes the rest:
@@ -120,8 +134,12 @@ class Session {
   /// True: images of scenes with spectra also have a channel for each wavelength, named as "S0.443,15nm".
   void keep_wavelengths(bool keeps);
 
-  /// Renders the scene; prepares it first.
+  /// Renders the scene; prepares it first. With settings.until_error and a method other than `direct` and `volume`, camera
+  /// rays continue until this noise (AdaptiveRays).
   RenderResult render(Monitor* monitor = nullptr);
+
+  /// True: further images have the camera rays of the last one, if these were adaptive. Default: false.
+  void repeat_adaptive_rays(bool repeats);
 
   /// Radiant exitance at points of a body's surface; prepares the scene first. For mean free paths below the
   /// sample spacing, `render` traces shadow rays for the irradiance at its points; this function interpolates
@@ -149,6 +167,8 @@ class Session {
   std::span<const Body> bodies() const;
   /// Indirect light of the last image with bounces, for any view and light; null: none for these shapes.
   std::shared_ptr<const BouncedPlaces> bounced_places() const;
+  /// AdaptiveRays::rays of the last image.
+  std::span<const std::uint16_t> adaptive_rays() const;
   const SessionWork& work() const;  ///< work of the last edit and since
   /// Costs of the stages that ran.
   const std::vector<StageCost>& costs() const;

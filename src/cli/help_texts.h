@@ -14,6 +14,7 @@ inline constexpr const char* kExamples = R"(Examples:
   opaline render bunny.json -o bunny.exr --target-error 1% --verify
   opaline render bunny.json -o bunny.exr --time-budget 2s
   opaline render bunny.json -o warm.exr --set media.marble.specular_ior=1.4 --set lights.back.intensity=[9e4,7e4,5e4]
+  opaline render bunny.json -o bunny.exr --until-error 2%
   opaline render bunny.json -o reference.exr --method direct --until-error 2% --resume sums.exr
   opaline render bunny.json -o bunny.exr --log json --threads 4
   opaline compare bunny.exr reference.exr --fail-above 1%
@@ -51,7 +52,11 @@ tiles of the full image and small files, and takes as many samples as the budget
 volume_diffusion, by --method or by auto for all bodies, it takes cells as small as the budget allows. If
 even the cheapest image exceeds the budget, opaline renders it and a warning states the expected time. The resolution,
 --spp and settings.light_samples stay as you set them. The choice depends on the clock; the "repeat with" command does
-not. With --method direct, opaline stops when the budget ends.)";
+not. With --method direct, opaline stops when the budget ends.
+
+--until-error is the noise of the image against its own converged image: the standard error of a pixel, rms, in the
+worst channel. It replaces --spp: pixels have 8 to 1,024 camera rays, the noisiest the most. With --method direct, all
+pixels continue until the noise of the diffuse light is that; with volume, random walks until that of their cells is.)";
 
 inline constexpr const char* kMergeNotes =
     R"(Each machine of a farm renders a part with the same options. The merged image has the bytes of the one that opaline

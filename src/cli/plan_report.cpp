@@ -14,6 +14,7 @@
 #include "plan/choose_models.h"
 #include "plan/expected_seconds.h"
 #include "plan/make_plan.h"
+#include "render/adaptive_rays.h"
 #include "scene/names.h"
 #include "subsurface/method.h"
 #include "values/nearest_name.h"
@@ -40,13 +41,18 @@ std::string counted(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", grouped(count), noun, count == 1 ? "" : "s");
 }
 
-std::string picture_text(const Film& film) {
+std::string picture_text(const Scene& scene) {
+  const Film& film = scene.film;
   std::string text = fmt::format("{} x {} pixels, ", film.resolution[0], film.resolution[1]);
   if (film.crop) {
     const auto& [x0, y0, x1, y1] = *film.crop;
     text += fmt::format("crop x {} to {}, y {} to {}, ", x0, x1 - 1, y0, y1 - 1);
   }
-  text += counted(std::size_t(film.samples_per_pixel), "camera ray") + " per pixel";
+  text +=
+      has_adaptive_rays(scene)
+          ? fmt::format("{} to {} camera rays per pixel, until the noise is {:.3g} %", kFewestAdaptiveRays,
+                        grouped(std::size_t(kMostAdaptiveRays)), 100 * *scene.settings.until_error)
+          : counted(std::size_t(film.samples_per_pixel), "camera ray") + " per pixel";
   return text + fmt::format(", {} filter", name_of(film.filter));
 }
 
@@ -127,7 +133,7 @@ Paragraphs paragraphs_of(const Scene& scene, const World& world, const Plan& pla
           fmt::format("{}: {}, {}", scene.file, counted(scene.shapes.size(), "shape"),
                       counted(plan.triangles, "triangle")));
   if (!scene.translation.empty()) add_row(text, "asset", scene.translation);
-  add_row(text, "image", picture_text(scene.film));
+  add_row(text, "image", picture_text(scene));
   add_row(text, "lights", lights_text(scene.lights));
   for (std::size_t g = 0; g < std::min(plan.groups.size(), kMostShown); ++g)
     add_group(text, scene, world, plan.groups[g]);

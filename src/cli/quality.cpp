@@ -250,7 +250,7 @@ std::optional<MeasuredError> verify_picture(StageRunner& stages, const RenderArg
   // An error far below the target is not measured to its last digit.
   const double expected = errors.predicted
                               ? std::max(*errors.predicted, kKnownShare * errors.target.value_or(0))
-                              : estimated_relative_error(picture.image, picture.translucent);
+                              : settings_error(picture);
   try {
     const MeasuredError measured = stages.run(
         "verifying", [&] { return measure_error(session, expected, &stages.monitor()); },

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "bodies/plan.h"
@@ -32,6 +33,7 @@
 #include "plan/placement_warnings.h"
 #include "plan/seen_pixels.h"
 #include "plan/shapes_inside.h"
+#include "render/adaptive_rays.h"
 #include "render/layers.h"
 #include "render/render.h"
 #include "scene/names.h"
@@ -139,6 +141,12 @@ void prepare(StageRunner& stages, const RenderArguments& arguments, Session& ses
   }
 }
 
+SpentCameraRays camera_rays_of(const AdaptiveRays& adaptive, double until_error) {
+  const std::uint64_t all = std::accumulate(adaptive.rays.begin(), adaptive.rays.end(), std::uint64_t(0));
+  return {double(all) / double(adaptive.rays.size()), *std::ranges::max_element(adaptive.rays),
+          adaptive.noise, adaptive.has_reached_most ? std::optional(until_error) : std::nullopt};
+}
+
 Summary summarize(const Session& session, const Shading& shading) {
   Summary summary;
   summary.peak_memory = peak_memory();
@@ -147,7 +155,10 @@ Summary summarize(const Session& session, const Shading& shading) {
       session.plan().groups, [&](const BodyPlan& body) { return leaves_out_reentry(session.scene(), body); });
   summary.unknown_models = bodies_of_unknown_error(session.plan());
   summary.queries = shading.picture.queries;
-  summary.estimated_error = estimated_relative_error(shading.picture.image, shading.picture.translucent);
+  summary.estimated_error = settings_error(shading.picture);
+  if (!shading.picture.adaptive.rays.empty())
+    summary.camera_rays =
+        camera_rays_of(shading.picture.adaptive, session.scene().settings.until_error.value_or(0));
   if (shading.direct) {
     summary.entry_samples = shading.direct->entry_samples;
     summary.direct_error = shading.direct->relative_error;
@@ -219,7 +230,9 @@ void check_method_options(const RenderArguments& arguments, const Scene& scene) 
   };
   if (arguments.gives_entry_samples) throw no_use("--entry-samples", "direct");
   if (method == Method::volume) return;
-  if (arguments.gives_until_error) throw no_use("--until-error", "direct or volume");
+  if (arguments.time_budget && scene.settings.until_error)
+    throw Error(ErrorKind::bad_input, {}, 0, 0, "--time-budget chooses settings for the camera rays of --spp",
+                "one of --time-budget and --until-error");
   if (!arguments.resume.empty())
     throw bad_file(arguments.resume, "this method has no sums to resume", "--method direct or volume");
 }
@@ -282,7 +295,9 @@ KnownErrors plan(StageRunner& stages, const RenderArguments& arguments, Session&
   const std::size_t more_bytes = arguments.part
                                      ? part_bytes(*arguments.part, session)
                                      : asked_layer_bytes(arguments.layers, scene) +
-                                           (holds_view(arguments, is_frame) ? bytes_of_view(session) : 0);
+                                           (has_adaptive_rays(scene)          ? adaptive_bytes(scene.film)
+                                            : holds_view(arguments, is_frame) ? bytes_of_view(session)
+                                                                              : 0);
   check_memory(scene, session.plan(), more_bytes);
   if (arguments.target_error) print_trial(arguments.log, seconds_of_trial(session));
   KnownErrors errors = choose_settings(stages, arguments, session);

@@ -99,7 +99,15 @@ void add_asked_layers(StageRunner& stages, const LayerChoice& layers, Session& s
     });
   if (is_named(layers, kCryptomatte))
     stages.run("mattes", [&] {
-      add_mattes({session.scene(), session.world(), session.rays(), {}, &stages.monitor()}, image);
+      add_mattes({session.scene(),
+                  session.world(),
+                  session.rays(),
+                  {},
+                  &stages.monitor(),
+                  nullptr,
+                  {},
+                  session.adaptive_rays()},
+                 image);
       return 0;
     });
 }

@@ -76,6 +76,14 @@ struct SpentBudget {
   double spent = 0;    ///< CPU of the whole process without verification, s
 };
 
+/// Camera rays of an image by its error.
+struct SpentCameraRays {
+  double mean = 0;  ///< per pixel
+  int most = 0;
+  double noise = 0;                      ///< AdaptiveRays::noise
+  std::optional<double> missed_error{};  ///< settings.until_error if the bound of rays ended above it
+};
+
 struct Summary {
   std::vector<StageCost> costs;
   std::size_t peak_memory = 0;  ///< bytes
@@ -95,6 +103,7 @@ struct Summary {
   /// Rays of the shading pass: rays, CPU seconds of the whole pass, and those of them spent inside Embree.
   std::uint64_t rays = 0;
   double shading_seconds = 0, embree_seconds = 0;
+  std::optional<SpentCameraRays> camera_rays;
   std::string denoiser;  ///< empty: the image has its noise
   std::vector<std::string> outputs;
 };

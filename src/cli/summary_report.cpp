@@ -8,6 +8,7 @@
 
 #include "cli/report.h"
 #include "core/units.h"
+#include "render/adaptive_rays.h"
 
 namespace opaline {
 namespace {
@@ -83,6 +84,16 @@ std::string model_error_text(const Summary& summary) {
          (count == 1 ? summary.unknown_models[0] : fmt::format("{} bodies", count));
 }
 
+std::string camera_rays_text(const SpentCameraRays& rays) {
+  std::string text =
+      fmt::format("{:.1f} per pixel, at most {}; noise {:.3g} % (standard error, rms over the pixels)",
+                  rays.mean, grouped(std::size_t(rays.most)), 100 * rays.noise);
+  if (rays.missed_error)
+    text += fmt::format("; the bound of {} rays per pixel ended it above {:.3g} %",
+                        grouped(std::size_t(kMostAdaptiveRays)), 100 * *rays.missed_error);
+  return text;
+}
+
 void print_text(const Summary& summary) {
   write_line(stdout, "");
   print_costs(summary);
@@ -102,6 +113,7 @@ void print_text(const Summary& summary) {
     row("walks", fmt::format("{} per sample, channel and light; noise {:.3g} % (standard error of a cell, "
                              "rms over the surface)",
                              grouped(summary.walks), 100 * summary.walk_noise));
+  if (summary.camera_rays) row("camera rays", camera_rays_text(*summary.camera_rays));
   const std::string settings_error = settings_error_text(summary);
   if (!settings_error.empty()) row("error", settings_error);
   const std::string model_error = model_error_text(summary);
@@ -162,6 +174,12 @@ Json done_json(const Summary& summary) {
             {"outputs", summary.outputs}};
   if (summary.model_error) json["model_error"] = *summary.model_error;
   if (!summary.unknown_models.empty()) json["bodies_of_unknown_model_error"] = summary.unknown_models;
+  if (const auto& rays = summary.camera_rays) {
+    json["camera_rays"] = {{"mean", rays->mean},
+                           {"most", rays->most},
+                           {"noise", rays->noise},
+                           {"has_reached_error", !rays->missed_error}};
+  }
   if (summary.budget) json["budget"] = budget_json(*summary.budget);
   if (!summary.repeat_command.empty()) json["again_by"] = summary.repeat_command;
   return json;

@@ -254,9 +254,11 @@ std::span<const Member<Settings>> settings_members() {
           "entry_samples", whole_number, "", {1, kMostSamples},
           fmt::format("{}, or enough for `until_error`", kDefaultEntrySamples), {},
           "`direct`: sampled points of entry per pixel, rounded to whole passes of 16"),
-      member<&Settings::until_error>("until_error", number, "", {0, 1, true}, "none", {},
-                                     "`direct`, `volume`: relative noise at which to stop (rms of the "
-                                     "estimated standard error of the pixels or cells)"),
+      member<&Settings::until_error>(
+          "until_error", number, "", {0, 1, true}, "none", {},
+          "relative noise at which to stop (rms of the estimated standard error): "
+          "`direct`, of the diffuse light of pixels; `volume`, of cells; others, of "
+          "pixels, by camera rays in place of `samples_per_pixel`"),
       member<&Settings::cell_size>(
           "cell_size", number, "mean free paths", {.05, 100}, "", {cells},
           "`volume_diffusion`: size of the cells at the surface, in mean free paths or, if shorter, in units "

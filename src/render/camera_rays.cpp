@@ -9,11 +9,12 @@
 #include <numeric>
 
 #include "core/random.h"
+#include "core/scrambled_points.h"
 
 namespace opaline {
 namespace {
 
-constexpr std::uint64_t kLensSeed = 0x6c656e73, kTimeSeed = 0x74696d65;
+constexpr std::uint64_t kLensSeed = 0x6c656e73, kTimeSeed = 0x74696d65, kPixelSeed = 0x70697865;
 
 // The inverse of the filter's cumulative distribution along one axis, u in [0, 1).
 double filter_place(PixelFilter filter, double u) {
@@ -113,7 +114,8 @@ CameraRays::CameraRays(const Camera& camera, const Film& film, const World& worl
       lens_radius_(camera.aperture / 2 / world.unit),
       per_focus_distance_(world.unit /
                           camera.focus_distance.value_or(length(camera.look_at - camera.position))),
-      blades_(camera.blades) {
+      blades_(camera.blades),
+      filter_(film.filter) {
   const double pixel = width_.at(1), across = pixel * film.pixel_aspect;
   const Vec3d right = normalized(cross(forward_, camera.up)), down = cross(forward_, right);
   right_ = right * across;
@@ -141,13 +143,45 @@ Ray CameraRays::ray_through(double across, double below) const {
   return ray;
 }
 
+void CameraRays::make_progressive(std::uint64_t seed) {
+  constexpr int kSteps = 1024;
+  progressive_ = seed;
+  filter_places_.clear();
+  for (int i = 0; i <= kSteps; ++i) filter_places_.push_back(filter_place(filter_, double(i) / kSteps));
+  for (CameraRays& pose : poses_) pose.make_progressive(seed);
+}
+
+std::array<double, 2> CameraRays::progressive_point(std::uint64_t dimension, int x, int y, int sample) const {
+  return scrambled_point(std::uint32_t(sample),
+                         hash_bits(hash_bits(*progressive_, dimension), number_of(x, y)));
+}
+
+// Relative to the pixel's centre.
+CameraRays::Place CameraRays::pixel_place(int x, int y, int sample) const {
+  if (!progressive_) return places_[std::size_t(sample)];
+  const auto [u, v] = progressive_point(kPixelSeed, x, y, sample);
+  const auto place = [&](double at) {
+    const double step = at * double(filter_places_.size() - 1), first = std::floor(step);
+    const double* const places = filter_places_.data() + std::size_t(first);
+    return places[0] + (step - first) * (places[1] - places[0]);
+  };
+  return {place(u), place(v)};
+}
+
 // In the unit disc, or the polygon of the blades inside it. Radical inverses are independent of the lattice of
 // the pixel's positions; each pixel rotates them.
 CameraRays::Place CameraRays::lens_place(int x, int y, int sample) const {
-  const std::uint64_t bits = hash_bits(kLensSeed, std::uint64_t(y) * row_pixels_ + std::uint64_t(x));
+  const std::uint64_t bits = hash_bits(kLensSeed, number_of(x, y));
   const auto i = std::uint64_t(sample);
-  const double u = fraction(radical_inverse(i, 2) + double(bits >> 32) * 0x1p-32),
-               v = fraction(radical_inverse(i, 3) + double(bits & 0xffffffff) * 0x1p-32);
+  double u = 0, v = 0;
+  if (progressive_) {
+    const std::array<double, 2> point = progressive_point(kLensSeed, x, y, sample);
+    u = point[0];
+    v = point[1];
+  } else {
+    u = fraction(radical_inverse(i, 2) + double(bits >> 32) * 0x1p-32);
+    v = fraction(radical_inverse(i, 3) + double(bits & 0xffffffff) * 0x1p-32);
+  }
   const double radius = std::sqrt(u), turn = 2 * std::numbers::pi;
   if (blades_ == 0) return {radius * std::cos(turn * v), radius * std::sin(turn * v)};
   const double side = std::floor(v * blades_), along = v * blades_ - side, corner = turn / blades_;
@@ -156,13 +190,17 @@ CameraRays::Place CameraRays::lens_place(int x, int y, int sample) const {
           radius * ((along - 1) * std::cos(a) - along * std::cos(b))};
 }
 
-Ray CameraRays::ray(int x, int y, int sample) const {
+double CameraRays::time(int x, int y, int sample) const {
   constexpr std::uint64_t kTimeBase = 5;  // other than those of the lens
+  if (progressive_) return progressive_point(kTimeSeed, x, y, sample)[0];
+  const std::uint64_t bits = hash_bits(kTimeSeed, number_of(x, y));
+  return fraction(radical_inverse(std::uint64_t(sample), kTimeBase) + double(bits >> 32) * 0x1p-32);
+}
+
+Ray CameraRays::ray(int x, int y, int sample) const {
   Ray ray = still_ray(x, y, sample);
   if (!has_shutter_) return ray;
-  const std::uint64_t bits = hash_bits(kTimeSeed, std::uint64_t(y) * row_pixels_ + std::uint64_t(x));
-  const double time =
-      fraction(radical_inverse(std::uint64_t(sample), kTimeBase) + double(bits >> 32) * 0x1p-32);
+  const double time = this->time(x, y, sample);
   if (!poses_.empty()) {
     const double step = time * double(poses_.size() - 1);
     const std::size_t i = std::size_t(step);
@@ -177,7 +215,7 @@ Ray CameraRays::ray(int x, int y, int sample) const {
 }
 
 Ray CameraRays::still_ray(int x, int y, int sample) const {
-  const Place& place = places_[std::size_t(sample)];
+  const Place place = pixel_place(x, y, sample);
   Ray ray = ray_through(x + 0.5 + place.x - center_x_, y + 0.5 + place.y - center_y_);
   if (lens_radius_ == 0) return ray;
   const auto [right, down] = lens_place(x, y, sample);

@@ -2,7 +2,9 @@
 // From pixels to rays.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,7 +29,11 @@ class CameraRays {
   /// With the shutter of the scene: rays have times from 0 to 1, and the camera moves.
   CameraRays(const Scene& scene, const World& world);
 
-  /// x, y: pixel in the full image; sample in [0, samples_per_pixel).
+  /// Replaces the samples of each pixel by an endless random sequence of its own. Its first 2^k samples, and the 2^k
+  /// after them, cover pixel, lens and exposure evenly.
+  void make_progressive(std::uint64_t seed);
+
+  /// x, y: pixel in the full image; sample in [0, samples_per_pixel), or any if progressive.
   Ray ray(int x, int y, int sample) const;
   /// From the middle of the lens through the middle of a pixel.
   Ray middle_ray(int x, int y) const;
@@ -49,7 +55,12 @@ class CameraRays {
   Ray ray_through(double across, double below) const;
   /// The same of a still camera.
   Ray still_ray(int x, int y, int sample) const;
+  Place pixel_place(int x, int y, int sample) const;
   Place lens_place(int x, int y, int sample) const;
+  double time(int x, int y, int sample) const;
+  /// Point of the progressive sequence; dimension: of several independent ones.
+  std::array<double, 2> progressive_point(std::uint64_t dimension, int x, int y, int sample) const;
+  std::uint64_t number_of(int x, int y) const { return std::uint64_t(y) * row_pixels_ + std::uint64_t(x); }
 
   Vec3d position_, forward_, right_, down_;  // right_ and down_: one pixel on the film plane at depth 1
   Vec3d across_, below_;                     // dot products with them, over the depth, are pixels
@@ -60,7 +71,10 @@ class CameraRays {
   Vec3d lens_right_, lens_down_;  // radius of the lens
   double lens_radius_, per_focus_distance_;
   int blades_;
-  std::vector<Place> places_;  // relative to the pixel's centre
+  PixelFilter filter_;
+  std::vector<Place> places_;                 // relative to the pixel's centre
+  std::optional<std::uint64_t> progressive_;  // seed
+  std::vector<double> filter_places_;  // progressive: inverse of the filter's distribution, at equal steps
   bool has_shutter_ = false;
   std::vector<CameraRays> poses_;  // while the shutter is open; empty: the camera stays
 };

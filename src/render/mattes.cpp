@@ -97,23 +97,32 @@ std::vector<Light> hiding_lights(const RenderInput& input) {
   return lights;
 }
 
-std::vector<SeenMeshes> seen_in(const Rectangle& tile, const RenderInput& input, const CameraRays& camera,
-                                std::span<const Light> lights) {
-  std::vector<SeenMeshes> seen(std::size_t(tile.x1 - tile.x0) * std::size_t(tile.y1 - tile.y0));
-  std::vector<TracedRay> rays(seen.size());
-  for (int s = 0; s < input.scene.film.samples_per_pixel; ++s) {
-    advance(input.monitor, 1);
-    std::size_t i = 0;
+/// counts: numbers of rays, row by row in the tile
+std::vector<SeenMeshes> seen_in(const Rectangle& tile, std::span<const int> counts, const RenderInput& input,
+                                const CameraRays& camera, std::span<const Light> lights) {
+  std::vector<SeenMeshes> seen(counts.size());
+  std::vector<TracedRay> rays;
+  std::vector<std::size_t> pixel_of_ray;
+  const int most = *std::ranges::max_element(counts);
+  for (int s = 0; s < most; ++s) {
+    if (s < input.scene.film.samples_per_pixel) advance(input.monitor, 1);
+    rays.clear();
+    pixel_of_ray.clear();
+    std::size_t pixel = 0;
     for (int y = tile.y0; y < tile.y1; ++y)
-      for (int x = tile.x0; x < tile.x1; ++x) rays[i++] = {camera.ray(x, y, s), {}};
+      for (int x = tile.x0; x < tile.x1; ++x, ++pixel)
+        if (s < counts[pixel]) {
+          rays.push_back({camera.ray(x, y, s), {}});
+          pixel_of_ray.push_back(pixel);
+        }
     intersect_from_camera(input.scene, input.rays, rays);
-    for (i = 0; i < rays.size(); ++i) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
       const Ray& ray = rays[i].ray;
       const Hit& hit = rays[i].hit;
       const bool is_hidden = std::ranges::any_of(lights, [&](const Light& light) {
         return intersect_emitter(light, ray.origin, ray.direction, ray.far).hit;
       });
-      if (hit.mesh != Hit::kMiss && !is_hidden) count(seen[i], hit.mesh);
+      if (hit.mesh != Hit::kMiss && !is_hidden) count(seen[pixel_of_ray[i]], hit.mesh);
     }
   }
   return seen;
@@ -161,20 +170,28 @@ void add_mattes(const RenderInput& input, Image& picture) {
     for (const std::string& name : layers[k].names) ids[k].push_back(matte_id(name));
   }
   add_channels(picture, channels);
-  const CameraRays camera(input.scene, input.world);
+  CameraRays camera(input.scene, input.world);
+  if (!input.adaptive_rays.empty()) camera.make_progressive(input.scene.settings.seed);
   const std::vector<Light> lights = hiding_lights(input);
   const std::vector<Rectangle> tiles = tiles_of(film);
   const std::size_t step = picture.channels.size();
   if (input.monitor != nullptr)
     input.monitor->begin("mattes", tiles.size() * std::size_t(film.samples_per_pixel));
   parallel_chunks(tiles.size(), 1, [&](std::size_t begin, std::size_t, std::size_t) {
-    const std::vector<SeenMeshes> seen = seen_in(tiles[begin], input, camera, lights);
-    for_each_pixel(tiles[begin], rendered_part(film), [&](int x, int y, std::size_t i) {
+    const Rectangle& tile = tiles[begin];
+    const auto place_of = [&](int x, int y) {
+      return std::size_t(y - picture.crop_y) * std::size_t(picture.width) + std::size_t(x - picture.crop_x);
+    };
+    std::vector<int> counts(std::size_t(tile.x1 - tile.x0) * std::size_t(tile.y1 - tile.y0),
+                            film.samples_per_pixel);
+    if (!input.adaptive_rays.empty())
+      for_each_pixel(tile, rendered_part(film),
+                     [&](int x, int y, std::size_t i) { counts[i] = input.adaptive_rays[place_of(x, y)]; });
+    const std::vector<SeenMeshes> seen = seen_in(tile, counts, input, camera, lights);
+    for_each_pixel(tile, rendered_part(film), [&](int x, int y, std::size_t i) {
       if (seen[i].empty()) return;
-      const std::size_t row = std::size_t(y - picture.crop_y), column = std::size_t(x - picture.crop_x);
-      float* const pixel = picture.pixels.data() + (row * std::size_t(picture.width) + column) * step;
-      for (std::size_t k = 0; k < layers.size(); ++k)
-        store(seen[i], layers[k], ids[k], film.samples_per_pixel, pixel);
+      float* const pixel = picture.pixels.data() + place_of(x, y) * step;
+      for (std::size_t k = 0; k < layers.size(); ++k) store(seen[i], layers[k], ids[k], counts[i], pixel);
     });
   });
 }

@@ -18,7 +18,7 @@ inline constexpr std::size_t kMatteRanks = 6;
 /// Appends the layers CryptoObject and CryptoMaterial to an image, and their metadata. An object is a shape.
 /// Its material is its medium; opaque shapes are materials of their own. Traces the camera rays again for
 /// their coverage; costs 24 floats per pixel.
-/// in    picture: of the input's scene
+/// in    picture: of the input's scene, and of its RenderInput::adaptive_rays
 /// from  Friedman & Jones 2015, Fully Automatic ID Mattes with Support for Motion Blur and Transparency;
 ///       Cryptomatte specification 1.2.0
 void add_mattes(const RenderInput& input, Image& picture);

@@ -45,9 +45,9 @@ constexpr float kGatheringSpread = 0.25f;
 constexpr std::uint64_t kGatheringSeed = 1, kFurtherSeed = 2;
 
 // Width of a camera ray: several share a pixel.
-PixelWidth camera_ray_width(const RenderInput& input) {
+PixelWidth camera_ray_width(const RenderInput& input, int rays_per_pixel) {
   const PixelWidth pixel = pixel_width(input.scene.camera, input.scene.film, input.world);
-  const double rays = std::sqrt(input.scene.film.samples_per_pixel / input.scene.film.pixel_aspect);
+  const double rays = std::sqrt(rays_per_pixel / input.scene.film.pixel_aspect);
   return {pixel.at_camera / rays, pixel.per_depth / rays};
 }
 
@@ -69,7 +69,7 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
     : input_(input),
       lights_(recentred_lights(input.scene, input.world)),
       textures_(input.scene, input.world),
-      ray_width_(camera_ray_width(input)) {
+      ray_width_(camera_ray_width(input, input.scene.film.samples_per_pixel)) {
   const std::vector<OuterBoundary> outer = boundaries_of(input.scene, input.world);
   fields_ = make_fields(input, textures_, outer, sources);
   if (input.view != nullptr) {
@@ -115,6 +115,10 @@ Shader::Shader(const RenderInput& input, std::span<const FieldSource> sources)
   light_samples_ = light_samples_of_ray(input.scene);
   if (input.view != nullptr && can_hold_coats())
     for (const Light& light : lights_) unit_lights_.push_back(with_emission(light, {1, 1, 1}));
+}
+
+void Shader::set_ray_width(int rays_per_pixel) {
+  ray_width_ = camera_ray_width(input_, rays_per_pixel);
 }
 
 Shader::Shaded Shader::shade(const RayBatch& batch, const Pass& pass, HeldView::Batch* held) const {

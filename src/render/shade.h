@@ -30,6 +30,9 @@ class Shader {
   /// For radiance_along.
   void set_mirrored_by_bodies(MirroredByBodies mirrored) { mirrored_by_bodies_ = mirrored; }
 
+  /// Sets the width of camera rays for texture filtering as of this number per pixel, instead of the film's.
+  void set_ray_width(int rays_per_pixel);
+
   /// Specular reflection at the hits: by rays, as of a uniform illumination, or none.
   enum class Specular { traced, uniform, none };
   /// Traced rays, shaded together.

@@ -68,8 +68,10 @@ Image empty_image(const Rectangle& part, const Film& film, std::vector<std::stri
   return image;
 }
 
-TileRenderer::TileRenderer(const RenderInput& input, const Shader& shader)
-    : input_(input), camera_(input.scene, input.world), shader_(shader) {}
+TileRenderer::TileRenderer(const RenderInput& input, const Shader& shader, CameraSamples samples)
+    : input_(input), camera_(input.scene, input.world), shader_(shader) {
+  if (samples == CameraSamples::progressive) camera_.make_progressive(input.scene.settings.seed);
+}
 
 // Intersects the rays, or copies cached hits.
 void TileRenderer::trace(std::span<TracedRay> rays, HeldView::Batch* held) const {
@@ -133,6 +135,46 @@ TileRenderer::Tile TileRenderer::render(const Rectangle& tile, const Pass& pass,
     for (std::size_t i = 0; i < rays.size(); ++i) add_sample(result.sums[pixel_of_ray[i]], seen[i]);
   }
   return result;
+}
+
+std::size_t TileRenderer::render_progressive(const Rectangle& tile, const Pass& pass,
+                                             const SequenceRange& range, std::span<const std::uint8_t> chosen,
+                                             const UseSample& use) const {
+  const Film& film = input_.scene.film;
+  const auto samples = std::uint64_t(film.samples_per_pixel), width = std::uint64_t(film.resolution[0]);
+  const std::uint64_t first_key = pass.index * width * std::uint64_t(film.resolution[1]) * samples;
+  std::vector<PixelSample> seen;
+  std::vector<TracedRay> rays;
+  std::vector<std::uint64_t> keys;
+  std::vector<std::size_t> pixel_of_ray;
+  std::size_t queries = 0;
+  const auto shade = [&] {
+    trace(rays, nullptr);
+    if (shader_.has_visible_lights() || std::ranges::any_of(rays, is_hit)) {
+      seen.assign(rays.size(), PixelSample{});
+      queries += shader_.shade(shader_.camera_batch(rays, keys, seen), pass).queries;
+      for (std::size_t i = 0; i < rays.size(); ++i) use(pixel_of_ray[i], seen[i]);
+    }
+    advance(input_.monitor, rays.size());
+    rays.clear();
+    keys.clear();
+    pixel_of_ray.clear();
+  };
+  // Pixels of several squares share a batch where few are chosen.
+  for (const Batch& batch : batches_of(tile, range.end - range.begin)) {
+    for_each_pixel(tile, batch.pixels, [&](int x, int y, std::size_t pixel) {
+      if (chosen[pixel] == 0) return;
+      if (!rays.empty() && rays.size() + (batch.end - batch.first) > kBatchRays) shade();
+      const std::uint64_t pixel_key = first_key + (std::uint64_t(y) * width + std::uint64_t(x)) * samples;
+      for (std::uint64_t s = range.begin + batch.first; s < range.begin + batch.end; ++s) {
+        rays.push_back({camera_.ray(x, y, int(range.before + s)), {}});
+        keys.push_back(pixel_key + s);
+        pixel_of_ray.push_back(pixel);
+      }
+    });
+  }
+  if (!rays.empty()) shade();
+  return queries;
 }
 
 }  // namespace opaline

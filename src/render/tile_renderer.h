@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "render/camera_rays.h"
@@ -24,9 +25,13 @@ void for_each_pixel(const Rectangle& tile, const Rectangle& part, const Use& use
 /// A black image of the part with these channels.
 Image empty_image(const Rectangle& part, const Film& film, std::vector<std::string> channels);
 
+/// Samples of a pixel: a pattern shared by all, or CameraRays::make_progressive.
+enum class CameraSamples { pattern, progressive };
+
 class TileRenderer {
  public:
-  TileRenderer(const RenderInput& input, const Shader& shader);
+  TileRenderer(const RenderInput& input, const Shader& shader,
+               CameraSamples samples = CameraSamples::pattern);
 
   struct Tile {
     std::vector<PixelSample> sums;  ///< row by row; over the samples of a pixel; empty: nothing was hit
@@ -37,6 +42,17 @@ class TileRenderer {
   /// cached results of this tile, extended; or null.
   Tile render(const Rectangle& tile, const Pass& pass = {},
               std::vector<HeldView::Batch>* held = nullptr) const;
+
+  /// Receives each ray of a pixel; pixel: row by row in the tile.
+  using UseSample = std::function<void(std::size_t pixel, const PixelSample& sample)>;
+  /// Samples of a sequence of samples_per_pixel rays; before: number of progressive camera rays before it.
+  struct SequenceRange {
+    std::uint64_t before, begin, end;
+  };
+  /// Renders progressive samples of some pixels. Returns the number of queries.
+  /// in    chosen: 1 for these pixels, row by row in the tile
+  std::size_t render_progressive(const Rectangle& tile, const Pass& pass, const SequenceRange& range,
+                                 std::span<const std::uint8_t> chosen, const UseSample& use) const;
 
  private:
   void trace(std::span<TracedRay> rays, HeldView::Batch* held) const;

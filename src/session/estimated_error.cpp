@@ -62,4 +62,9 @@ double estimated_relative_error(const Image& image, std::span<const std::uint8_t
   return worst;
 }
 
+double settings_error(const RenderResult& result) {
+  return result.adaptive.rays.empty() ? estimated_relative_error(result.image, result.translucent)
+                                      : result.adaptive.settings_error;
+}
+
 }  // namespace opaline

@@ -176,16 +176,21 @@ void add_light_groups(Session& session, Image& picture, Monitor* monitor) {
   const std::vector<LightGroup> groups = light_groups(whole);
   const std::vector<GroupPlaces> places = append_layers(picture, groups);
   if (groups.size() == 1) return copy_group(picture, places[0], picture);
+  const auto restore = [&] {
+    session.repeat_adaptive_rays(false);
+    session.edit(whole);
+  };
   try {
+    session.repeat_adaptive_rays(true);
     for (std::size_t g = 0; g < groups.size(); ++g) {
       session.edit(lit_by(whole, groups[g]));
       copy_group(session.render(monitor).image, places[g], picture);
     }
   } catch (...) {
-    session.edit(whole);
+    restore();
     throw;
   }
-  session.edit(whole);
+  restore();
   session.prepare(monitor);
   scale_to_picture(picture, places);
 }

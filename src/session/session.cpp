@@ -26,6 +26,9 @@ void Session::hold_view(bool hold) {
 void Session::match_new_session(bool matches) {
   state_->matches_new_ = matches;
 }
+void Session::repeat_adaptive_rays(bool repeats) {
+  state_->repeats_rays_ = repeats;
+}
 void Session::keep_wavelengths(bool keeps) {
   state_->keeps_wavelengths_ = keeps;
 }
@@ -74,6 +77,9 @@ std::shared_ptr<const BouncedPlaces> Session::bounced_places() const {
 
 std::span<const Body> Session::bodies() const {
   return state_->bodies();
+}
+std::span<const std::uint16_t> Session::adaptive_rays() const {
+  return state_->adaptive_rays_;
 }
 const SessionWork& Session::work() const {
   return state_->work_;

@@ -12,6 +12,7 @@
 #include "plan/choose_models.h"
 #include "plan/make_plan.h"
 #include "plan/other_wavelengths.h"
+#include "render/adaptive_rays.h"
 #include "scene/same_place.h"
 #include "scene/scene_properties.h"
 #include "session/first_light.h"
@@ -289,17 +290,22 @@ RenderResult Session::State::channels_image(Monitor* monitor) {
   RenderInput input{scene_, *world_, *rays_, bodies(), monitor, view};
   if (bounces_of(scene_) > 0) update_bounced_places(input);
   input.bounced = bounced_;
-  RenderResult result = opaline::render(input);
+  if (repeats_rays_) input.adaptive_rays = adaptive_rays_;
+  RenderResult result = has_adaptive_rays(scene_) ? render_adaptive(input) : opaline::render(input);
+  adaptive_rays_ = result.adaptive.rays;
   work_.queries += result.queries;
   return result;
 }
 
-/// Renders each group of wavelengths as an edit of the media and colours. The first group's scene remains.
+/// Renders each group of wavelengths as an edit of the media and colours, by the adaptive rays of the first. The first
+/// group's scene remains.
 RenderResult Session::State::spectral_image(Monitor* monitor) {
   const Scene first = scene_;
   const std::vector<BodyPlan> reference = reference_;
   std::vector<StageCost> costs;
+  const bool repeats = repeats_rays_;
   const auto restore = [&] {
+    repeats_rays_ = repeats;
     if (first.other_wavelengths.empty()) return;
     edit(first);
     reference_ = reference;
@@ -313,6 +319,7 @@ RenderResult Session::State::spectral_image(Monitor* monitor) {
     if (keeps_wavelengths_) layers.keep(sum.image, *scene_.wavelengths);
     convert_to_rgb(sum.image, scene_.wavelengths->to_rgb);
     if (reference_.empty()) reference_ = plan_.groups;  // same profiles at all wavelengths
+    repeats_rays_ = true;
     for (std::size_t g = 0; g < first.other_wavelengths.size(); ++g) {
       edit(at_other_wavelengths(first, g));
       RenderResult result = channels_image(monitor);
@@ -321,6 +328,8 @@ RenderResult Session::State::spectral_image(Monitor* monitor) {
       add_colors(sum.image, result.image);
       sum.queries += result.queries;
       sum.non_finite += result.non_finite;
+      sum.adaptive.noise = std::max(sum.adaptive.noise, result.adaptive.noise);
+      sum.adaptive.settings_error = std::max(sum.adaptive.settings_error, result.adaptive.settings_error);
       costs.insert(costs.end(), costs_.begin(), costs_.end());
     }
   } catch (...) {

@@ -84,6 +84,8 @@ struct Session::State {
   std::vector<BodyPlan> reference_;  ///< plans of the anchor; empty: none
   double cell_size_ = 0;             ///< settings.cell_size of the last scene
   bool edits_ = true, prepared_ = false, anchored_ = false, matches_new_ = false;
+  std::vector<std::uint16_t> adaptive_rays_;  // AdaptiveRays::rays of the last image
+  bool repeats_rays_ = false;
   SourceKeys source_keys_;
   WalkStore walk_store_;
   SessionWork work_;

@@ -2,6 +2,7 @@
 // All inputs of an image.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 
@@ -24,6 +25,8 @@ struct RenderInput {
   /// Indirect light gathered for this or another view of the same surfaces under the same light; null: render
   /// gathers it.
   std::shared_ptr<const BouncedPlaces> bounced = {};
+  /// Numbers of progressive camera rays of an earlier image, per pixel; empty: the usual rays, or by settings.until_error.
+  std::span<const std::uint16_t> adaptive_rays = {};
 };
 
 }  // namespace opaline

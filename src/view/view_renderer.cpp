@@ -15,6 +15,7 @@
 #include "plan/picture_warnings.h"
 #include "plan/placement_warnings.h"
 #include "plan/shapes_inside.h"
+#include "render/adaptive_rays.h"
 #include "render/camera_rays.h"
 #include "render/fields/make_fields.h"
 #include "session/spectral_image.h"
@@ -85,6 +86,9 @@ ViewRenderer::~ViewRenderer() {
 
 void ViewRenderer::show(Scene scene, std::uint32_t revision, std::optional<Scene> reference,
                         bool has_new_files) {
+  // The live image has the camera rays of the film.
+  if (has_adaptive_rays(scene)) scene.settings.until_error.reset();
+  if (reference && has_adaptive_rays(*reference)) reference->settings.until_error.reset();
   {
     const std::lock_guard lock(mutex_);
     has_new_files = has_new_files || (wanted_ && wanted_->has_new_files);

@@ -249,6 +249,38 @@ TEST(CliQuality, DirectStopsInTime) {
   EXPECT_TRUE(contains(done["again_by"], entries)) << done["again_by"];
 }
 
+// Claim: --until-error ends images of all methods of camera rays at this noise; the plan names it, and the closing line and the log
+// state the rays, the noise and an error out of reach. Source: the documentation. Fails if: a method refuses the option, or the
+// closing line omits the bound.
+TEST(CliQuality, UntilErrorByEveryMethod) {
+  const SceneFolder folder;
+  const auto render = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", folder.scene, "-o", folder.file("a.exr"), "--resolution", "16x16"});
+    return run_program(more);
+  };
+  for (const char* method :
+       {"auto", "lambert", "preintegrated", "image_space", "hierarchical", "volume_diffusion"}) {
+    const Outcome outcome = render({"--method", method, "--until-error", "5%", "--log", "json"});
+    ASSERT_EQ(outcome.exit_code, 0) << method << outcome.err;
+    const nlohmann::json rays = event_of(events_of(outcome.out), "done")["camera_rays"];
+    EXPECT_LE(rays["noise"], .05) << method;
+    EXPECT_GT(rays["noise"], 0) << method;
+    EXPECT_GE(rays["mean"], 8) << method;
+    EXPECT_GE(rays["most"], rays["mean"]) << method;
+    EXPECT_EQ(rays["has_reached_error"], true) << method;
+  }
+  const Outcome text = render({"--until-error", "1e-6", "--crop", "0,0,2,2"});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_TRUE(contains(text.out, "8 to 1,024 camera rays per pixel, until the noise is 0.0001 %"))
+      << text.out;
+  EXPECT_TRUE(contains(text.out, "\ncamera rays ")) << text.out;
+  const Outcome bound = render({"--until-error", "1e-6", "--crop", "6,6,10,10", "--method", "lambert"});
+  EXPECT_TRUE(contains(bound.out, "; the bound of 1,024 rays per pixel ended it above 0.0001 %"))
+      << bound.out;
+  const Outcome uniform = render({"--log", "json"});
+  EXPECT_FALSE(event_of(events_of(uniform.out), "done").contains("camera_rays"));
+}
+
 // Claim: without lights the image is black, so that no error remains to be reached or measured; render names each option without
 // effect, by every method, once for all frames, and succeeds. Source: by hand. Fails if: the options complain of the method that
 // replaces the body's, settings are chosen, or an option is dropped without a word.

@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "diffusion/diffuse_profile.h"
 #include "methods/direct/direct_field.h"
+#include "render/relative_noise.h"
 #include "render/tile_renderer.h"
 #include "scene/scene_properties.h"
 #include "subsurface/method.h"
@@ -178,21 +179,16 @@ DirectEstimate direct_estimate(const DirectState& state, std::size_t pixel) {
 double relative_noise(const DirectState& state) {
   if (state.passes < 2) return std::numeric_limits<double>::infinity();
   const std::size_t pixels = state.sums.size() / DirectState::kSums;
-  std::array<double, 3> brightest{}, squares{};
-  std::size_t lit = 0;
+  std::array<double, 3> brightest{};
   for (std::size_t p = 0; p < pixels; ++p)
     for (std::size_t c = 0; c < 3; ++c)
       brightest[c] = std::max(brightest[c], double(direct_estimate(state, p).mean[c]));
+  RelativeNoise noise(brightest);
   for (std::size_t p = 0; p < pixels; ++p) {
     const DirectEstimate pixel = direct_estimate(state, p);
-    if (pixel.mean == RgbF{}) continue;
-    ++lit;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double mean = double(pixel.mean[c]), floor = 0.01 * brightest[c];
-      if (brightest[c] > 0) squares[c] += pixel.variance[c] / (mean * mean + floor * floor);
-    }
+    if (pixel.mean != RgbF{}) noise.add(pixel.mean, pixel.variance);
   }
-  return lit == 0 ? 0 : std::sqrt(*std::ranges::max_element(squares) / double(lit));
+  return noise.value();
 }
 
 DirectResult render_direct(const PrecomputeInput& input, DirectState& state,

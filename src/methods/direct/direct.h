@@ -57,8 +57,7 @@ struct DirectEstimate {
 /// Mean and standard error of a pixel, from the sums of all passes.
 DirectEstimate direct_estimate(const DirectState& state, std::size_t pixel);
 
-/// Rms over the lit pixels of the estimated standard error over sqrt(mean^2 + (1 % of the brightest)^2),
-/// worst channel.
+/// RelativeNoise of the diffuse radiance.
 double relative_noise(const DirectState& state);
 
 /// Writes a state as an EXR of 32-bit sums; `scene_key`: identifies their scene.
