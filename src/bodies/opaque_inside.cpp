@@ -77,21 +77,26 @@ bool has_vertices_inside(const World& world, const RayScene& rays, const BodyPla
          length(inside.high - inside.low) > kConsiderable * length(box.high - box.low);
 }
 
-std::vector<std::uint32_t> opaque_inside(const Scene& scene, const World& world, const RayScene& rays,
-                                         const BodyPlan& body) {
-  const auto is_closed = [&](std::uint32_t mesh) {
-    return world.reports[mesh].open_edges == 0 &&
-           !std::holds_alternative<QuadShape>(scene.shapes[mesh].source);
-  };
+bool is_opaque_solid(const Scene& scene, const World& world, std::uint32_t mesh) {
+  return !scene.shapes[mesh].medium && world.reports[mesh].open_edges == 0 &&
+         !std::holds_alternative<QuadShape>(scene.shapes[mesh].source);
+}
+
+std::vector<std::uint32_t> opaque_beside(const Scene& scene, const World& world, const BodyPlan& body) {
   const auto meets = [&](std::uint32_t mesh) {
     return std::ranges::any_of(body.meshes,
                                [&](std::uint32_t own) { return meet(world.boxes[own], world.boxes[mesh]); });
   };
   std::vector<std::uint32_t> found;
   for (std::uint32_t mesh = 0; mesh < world.meshes.size(); ++mesh)
-    if (!scene.shapes[mesh].medium && is_closed(mesh) && meets(mesh) &&
-        has_vertices_inside(world, rays, body, mesh))
-      found.push_back(mesh);
+    if (is_opaque_solid(scene, world, mesh) && meets(mesh)) found.push_back(mesh);
+  return found;
+}
+
+std::vector<std::uint32_t> opaque_inside(const Scene& scene, const World& world, const RayScene& rays,
+                                         const BodyPlan& body) {
+  std::vector<std::uint32_t> found = opaque_beside(scene, world, body);
+  std::erase_if(found, [&](std::uint32_t mesh) { return !has_vertices_inside(world, rays, body, mesh); });
   return found;
 }
 

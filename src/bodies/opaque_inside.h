@@ -21,7 +21,13 @@ bool is_inside(const RayScene& rays, const BodyPlan& body, const Vec3d& point);
 /// True if the vertices of the shape inside the body span a considerable part of it, more than the stem of an apple.
 bool has_vertices_inside(const World& world, const RayScene& rays, const BodyPlan& body, std::uint32_t mesh);
 
-/// Opaque shapes with a considerable part inside the body, closed ones alone.
+/// True for a closed opaque shape.
+bool is_opaque_solid(const Scene& scene, const World& world, std::uint32_t mesh);
+
+/// Opaque solids, their bounding boxes meeting those of the body.
+std::vector<std::uint32_t> opaque_beside(const Scene& scene, const World& world, const BodyPlan& body);
+
+/// Those with a considerable part inside the body. Reads all vertices of the shapes beside it.
 std::vector<std::uint32_t> opaque_inside(const Scene& scene, const World& world, const RayScene& rays,
                                          const BodyPlan& body);
 

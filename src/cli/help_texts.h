@@ -41,18 +41,19 @@ excludes antialiasing; set --spp yourself. With volume_diffusion, by --method or
 measured against --method volume and includes the model error, bounded by the plan's expected
 model error. If the target is below the least error that opaline can promise, a warning states that error and opaline
 uses it. Otherwise the error is that against the converged --method direct, and excludes the error of the radial
-profile; --verify replaces auto by hierarchical. opaline estimates the error on a small image and adds samples until the estimate is low enough. --verify
-measures the error of the result, at a cost that grows with the square of the accuracy. The closing line "repeat with"
-is a command that makes the same pixels without choosing. With --frames, opaline chooses the settings once, at
-settings.reference_frame, and all frames share them, to avoid flicker.
+profile; a warning says so if auto chose the method. --verify replaces auto by hierarchical. opaline estimates the error
+on a small image and adds samples until the estimate is low enough. --verify measures the error of the result, at a cost
+that grows with the square of the accuracy. The closing line "repeat with" is a command that makes the same pixels
+without choosing. With --frames, opaline chooses the settings once, at settings.reference_frame, and all frames share
+them, to avoid flicker.
 
 --time-budget is the CPU time of the whole program (all threads, user and system), as in the closing table. It
 includes start, loading, choosing and writing, but not --verify. opaline predicts cost and error from small images,
 tiles of the full image and small files, and takes as many samples as the budget allows, up to settings.max_samples. With
-volume_diffusion, by --method or by auto for all bodies, it takes cells as small as the budget allows. If
-even the cheapest image exceeds the budget, opaline renders it and a warning states the expected time. The resolution,
---spp and settings.light_samples stay as you set them. The choice depends on the clock; the "repeat with" command does
-not. With --method direct, opaline stops when the budget ends.
+volume_diffusion, by --method or by auto for all bodies, it takes cells as small as the budget allows. If even the
+cheapest image exceeds the budget, opaline renders it and a warning states the expected time. The resolution, --spp and
+settings.light_samples stay as you set them. The choice depends on the clock; the "repeat with" command does not. With
+--method direct, opaline stops when the budget ends.
 
 --until-error is the noise of the image against its own converged image: the standard error of a pixel, rms, in the
 worst channel. It replaces --spp: pixels have 8 to 1,024 camera rays, the noisiest the most. With --method direct, all

@@ -92,12 +92,10 @@ class ShapesInside {
       Bounds box = bounds(world_, body.meshes);
       const Vec3d margin = (box.high - box.low) * 1e-5;  // surfaces that touch
       box = {box.low + margin, box.high - margin};
-      const std::vector<std::uint32_t> absorbing = body.method == Method::volume_diffusion
-                                                       ? opaque_inside(scene_, world_, rays_, body)
-                                                       : std::vector<std::uint32_t>{};
+      const bool has_cells = body.method == Method::volume_diffusion;  // opaque solids absorb light there
       for (std::uint32_t other = 0; other < world_.meshes.size(); ++other)
         if (!is_of(body, other) && meet(box, boxes_[other]) &&
-            std::ranges::find(absorbing, other) == absorbing.end())
+            !(has_cells && is_opaque_solid(scene_, world_, other)))
           test(i, box, other);
     }
     if (count_ > kMostNamed)

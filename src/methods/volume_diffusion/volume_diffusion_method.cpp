@@ -43,8 +43,9 @@ std::array<HomogeneousMedium, 3> isotropic_media(const DiffuseProfile& profile) 
 /// Cells with the media of the body.
 /// In a heterogeneous medium, mean free paths below the cells' resolution are lengthened to it, with the same
 /// reflectance; the point of exit is known within a cell anyway.
-/// in    body: with the samples of its cut surface; normals: of the same surface
-VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals) {
+/// in    body: with the samples of its cut surface; normals: of the same surface; opaque: opaque_inside
+VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::span<const Vec3f> normals,
+                           std::vector<std::uint32_t> opaque) {
   const double cell = body.plan.cell / input.world.unit, least = cell / input.scene.settings.cell_size;
   const bool has_layers = !input.scene.media[body.plan.medium].layers.empty();
   const auto resolved = [least, has_layers](ReducedMedium reduced) {
@@ -59,7 +60,6 @@ VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::
   const std::array<HomogeneousMedium, 3> media = isotropic_media(body.profile);
   MediaInside inside = media_inside(input, body, CubeCentre::inside, resolved);
   const bool is_varying = bool(inside);
-  std::vector<std::uint32_t> opaque = opaque_inside(input.scene, input.world, input.rays, body.plan);
   if (!opaque.empty())
     inside = with_opaque_shapes(input.world, input.rays, std::move(opaque), std::move(inside), media);
   return VolumeDiffusion({input.world, body.plan.meshes, body.surface.samples, normals, media, cell,
@@ -69,7 +69,21 @@ VolumeDiffusion body_cells(const PrecomputeInput& input, const Body& body, std::
 // Raise a stage's number when it computes other values from the same input (test_stage_versions).
 constexpr std::uint64_t kCellsVersion = 7, kDiffusionVersion = 12;
 
-StageKey cells_key(const BodyStages& stages) {
+/// Found anew only if a mesh has changed.
+const std::vector<std::uint32_t>& update_opaque(BodyStages& stages) {
+  const PrecomputeInput& input = stages.input;
+  const BodyPlan& body = stages.body.plan;
+  KeyBuilder key("opaque inside", 1);
+  for (const std::uint32_t mesh : body.meshes) key.add(stages.mesh_keys[mesh].shape);
+  for (const std::uint32_t mesh : opaque_beside(input.scene, input.world, body))
+    key.add(mesh).add(stages.mesh_keys[mesh].shape);
+  auto& opaque = state_of<VolumeDiffusionState>(stages.body).opaque;
+  stages.store.get(opaque, key.key(),
+                   [&] { return opaque_inside(input.scene, input.world, input.rays, body); });
+  return opaque.value;
+}
+
+StageKey cells_key(BodyStages& stages) {
   const Body& body = stages.body;
   const StageKey medium_inside = medium_key(stages.input.scene, stages.input.world, body.plan.meshes);
   KeyBuilder key("diffusion cells", kCellsVersion);
@@ -78,9 +92,7 @@ StageKey cells_key(const BodyStages& stages) {
   key.add(body.profile.mean_free_path).add(body.profile.diffuse_mean_free_path);
   if (medium_inside != StageKey{}) key.add(medium_inside);
   for (const std::uint32_t mesh : body.plan.meshes) key.add(stages.mesh_keys[mesh].shape);
-  for (const std::uint32_t mesh :
-       opaque_inside(stages.input.scene, stages.input.world, stages.input.rays, body.plan))
-    key.add("opaque").add(stages.mesh_keys[mesh].shape);
+  for (const std::uint32_t mesh : update_opaque(stages)) key.add("opaque").add(stages.mesh_keys[mesh].shape);
   return key.key();
 }
 
@@ -88,7 +100,7 @@ const VolumeDiffusion& update_cells(BodyStages& stages) {
   auto& cells = state_of<VolumeDiffusionState>(stages.body).cells;
   stages.store.get(cells, cells_key(stages), [&] {
     return std::make_shared<const VolumeDiffusion>(
-        body_cells(stages.input, stages.body, stages.keys.cut_normals));
+        body_cells(stages.input, stages.body, stages.keys.cut_normals, update_opaque(stages)));
   });
   return *cells.value;
 }

@@ -2,7 +2,9 @@
 // Cells of the diffusion equation inside one body and its solutions.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "methods/volume/cell_field.h"
 #include "methods/volume/fit_cells.h"
@@ -13,6 +15,7 @@ namespace opaline {
 
 struct VolumeDiffusionState : MethodState {
   static constexpr Method kMethod = Method::volume_diffusion;
+  StageResult<std::vector<std::uint32_t>> opaque;  ///< opaque_inside, indices into World::meshes
   StageResult<std::shared_ptr<const VolumeDiffusion>> cells;
   ReusedWeights weights;
   StageResult<std::shared_ptr<const NearestSample>> nearest;
