@@ -40,8 +40,8 @@ opaline applies these options first and then each --set in order. The last value
 excludes antialiasing; set --spp yourself. With volume_diffusion, by --method or by auto for all bodies, the error is
 measured against --method volume and includes the model error, bounded by the plan's expected
 model error. If the target is below the least error that opaline can promise, a warning states that error and opaline
-uses it. Otherwise the error is that against the converged --method direct, and excludes the error of the radial
-profile; a warning says so if auto chose the method. --verify replaces auto by hierarchical. opaline estimates the error
+uses it. With hierarchical in a body, the error excludes that of the radial profile; a warning says so if auto chose it.
+By hierarchical alone, it is the error against the converged --method direct. --verify replaces auto by hierarchical. opaline estimates the error
 on a small image and adds samples until the estimate is low enough. --verify measures the error of the result, at a cost
 that grows with the square of the accuracy. The closing line "repeat with" is a command that makes the same pixels
 without choosing. With --frames, opaline chooses the settings once, at settings.reference_frame, and all frames share
@@ -50,7 +50,7 @@ them, to avoid flicker.
 --time-budget is the CPU time of the whole program (all threads, user and system), as in the closing table. It
 includes start, loading, choosing and writing, but not --verify. opaline predicts cost and error from small images,
 tiles of the full image and small files, and takes as many samples as the budget allows, up to settings.max_samples. With
-volume_diffusion, by --method or by auto for all bodies, it takes cells as small as the budget allows. If even the
+volume_diffusion, by --method or by auto for some bodies, it takes cells as small as the budget allows. If even the
 cheapest image exceeds the budget, opaline renders it and a warning states the expected time. The resolution, --spp and
 settings.light_samples stay as you set them. The choice depends on the clock; the "repeat with" command does not. With
 --method direct, opaline stops when the budget ends.

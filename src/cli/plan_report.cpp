@@ -352,14 +352,15 @@ void print_volume_target(const Log& log, double target, const TargetError& chose
                  {"light_samples", settings.light_samples}});
   if (!chosen.sees_translucent) return warn_of_nothing_seen(log);
   if (!log.quiet && log.format == LogFormat::text)
-    print_row(
-        "target",
-        fmt::format("{:.3g} %: {}, cells of {:.3g} mean free paths, predicted error {} against random walks",
-                    100 * target, counted(chosen.samples, "sample"), settings.cell_size,
-                    short_percent(chosen.predicted)));
+    print_row("target", fmt::format("{:.3g} %: {}, cells of {:.3g} mean free paths, predicted error {} {}",
+                                    100 * target, counted(chosen.samples, "sample"), settings.cell_size,
+                                    short_percent(chosen.predicted),
+                                    chosen.model ? "against random walks" : "without that of the model"));
   if (!chosen.model)
-    return print_warning(
-        log, "a mesh is open or too thin for diffusion; its model error is unknown, so no error is promised");
+    return print_warning(log,
+                         "no error is promised: that of the model is unknown for bodies by hierarchical, and "
+                         "for those that light "
+                         "crosses almost without scattering");
   if (!chosen.reached)
     print_warning(log, fmt::format("cannot promise an error below {} against --method volume, including a "
                                    "model error of {}; opaline targets this error instead of {:.3g} %",
@@ -370,7 +371,7 @@ void print_volume_target(const Log& log, double target, const TargetError& chose
 void print_budget(const Log& log, double budget, double before, const TimeBudget& chosen,
                   const Settings& settings) {
   const double planned = before + chosen.planned;
-  const bool has_cells = settings.method == Method::volume_diffusion;
+  const bool has_cells = settings.method != Method::hierarchical;
   if (!log.quiet) {
     Json members{{"time_budget", budget},
                  {"planned", planned},

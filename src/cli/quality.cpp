@@ -42,11 +42,15 @@ void check_cells(const RenderArguments& arguments) {
                       "one of the two", text);
 }
 
+/// With cells in all bodies, or in some of them (with_named_method).
+bool chooses_cells(const Settings& settings) {
+  return settings.method == Method::volume_diffusion || settings.method == Method::automatic;
+}
+
 KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, Session& session) {
   const double before = process_cpu_seconds();
   const Scene scene = session.scene();
-  const bool has_cells = scene.settings.method == Method::volume_diffusion;
-  if (has_cells)
+  if (chooses_cells(scene.settings))
     check_cells(arguments);
   else
     check_groups(session, "--time-budget");
@@ -58,7 +62,7 @@ KnownErrors fit_settings(StageRunner& stages, const RenderArguments& arguments, 
       },
       InnerStages::trials);
   print_budget(arguments.log, *arguments.time_budget, before, chosen, session.scene().settings);
-  return {{}, chosen.predicted, {}};
+  return {{}, chosen.of_settings, {}};
 }
 
 KnownErrors choose_cells(StageRunner& stages, const RenderArguments& arguments, Session& session) {
@@ -69,7 +73,7 @@ KnownErrors choose_cells(StageRunner& stages, const RenderArguments& arguments, 
       InnerStages::trials);
   print_volume_target(arguments.log, target, chosen, session.scene().settings);
   KnownErrors known{target, {}, {}};
-  if (chosen.sees_translucent && chosen.model) known.predicted = chosen.predicted;
+  if (chosen.sees_translucent) known.predicted = chosen.of_settings;
   return known;
 }
 
@@ -99,7 +103,6 @@ void check_budget(const RenderArguments& render) {
 void warn_of_model(const Log& log, const Plan& plan) {
   const std::vector<std::string> unknown = bodies_of_unknown_error(plan);
   const std::optional<double> expected = expected_model_error(plan);
-  if (plan.groups.empty() || plan.groups[0].method == Method::volume_diffusion) return;
   print_warning(log,
                 fmt::format("--target-error leaves out the error of the model against --method volume: {}",
                             !unknown.empty() ? fmt::format("unknown for {}", fmt::join(unknown, ", "))
@@ -124,7 +127,9 @@ void name_method(const RenderArguments& arguments, Session& session) {
   Scene scene = with_named_method(session);
   if (arguments.verify) scene.settings.method = Method::hierarchical;
   session.edit(std::move(scene));
-  if (arguments.target_error && !arguments.verify) warn_of_model(arguments.log, session.plan());
+  if (arguments.target_error && session.scene().settings.method == Method::hierarchical &&
+      !arguments.verify && !session.plan().groups.empty())
+    warn_of_model(arguments.log, session.plan());
 }
 
 bool chooses_settings(const RenderArguments& arguments) {
@@ -181,7 +186,7 @@ RenderArguments settled_for_frames(const RenderArguments& arguments, StageCache*
   RenderArguments settled = arguments;
   const KnownErrors known = choose_settings(stages, arguments, session);
   settled.target_error.reset();
-  if (!known.predicted && session.scene().settings.method != Method::volume_diffusion) return settled;
+  if (!known.predicted && !chooses_cells(session.scene().settings)) return settled;
   for (std::string& text : chosen_overrides(session, 0)) settled.overrides.push_back(std::move(text));
   settled.overrides.push_back(
       fmt::format("settings.light_samples={}", session.scene().settings.light_samples));
@@ -211,7 +216,7 @@ KnownErrors choose_settings(StageRunner& stages, const RenderArguments& argument
     throw bad_usage("--time-budget cannot stop random walks", "--until-error, and --resume to continue later",
                     "volume");
   const bool hierarchical = settings.method == Method::hierarchical;
-  if (settings.method == Method::volume_diffusion && !arguments.verify) {
+  if (chooses_cells(settings) && !arguments.verify) {
     if (arguments.target_error) return choose_cells(stages, arguments, session);
     if (arguments.time_budget) return fit_settings(stages, arguments, session);
   }

@@ -14,8 +14,8 @@ namespace opaline {
 ///       incompatible options
 void check_quality(const RenderArguments& arguments);
 
-/// Replaces the session's method `auto` for options that choose settings or measure errors: by
-/// with_named_method for --target-error alone, else by hierarchical.
+/// Replaces the session's method `auto` for options that choose settings, by with_named_method, or measure errors, by
+/// hierarchical.
 void name_method(const RenderArguments& arguments, Session& session);
 
 /// Chooses the settings for --target-error or --time-budget, if given, and prints them. The session has the

@@ -277,7 +277,7 @@ std::optional<std::string> load(StageRunner& stages, const RenderArguments& argu
 /// CPU time of the first trial of --target-error, s.
 double seconds_of_trial(const Session& session) {
   Scene trial = session.scene();
-  if (trial.settings.method == Method::volume_diffusion) trial.settings.cell_size = kWidestCell;
+  if (trial.settings.method != Method::hierarchical) trial.settings.cell_size = kWidestCell;
   return expected_seconds(trial, make_plan(trial, session.world()));
 }
 

@@ -2,8 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/report.h"
@@ -54,6 +58,24 @@ void print_costs(const Summary& summary) {
                                    cost.stage == "choosing"  ? of_trials
                                    : cost.stage == "bounces" ? "   re-entry included"
                                                              : ""));
+}
+
+/// Error due to settings; 0: unknown, or none.
+double settings_error_of(const Summary& summary) {
+  return summary.errors.predicted.value_or(summary.estimated_error);
+}
+
+/// Error of settings and model against random walks; none if one is unknown.
+std::optional<double> whole_error(const Summary& summary) {
+  if (!summary.model_error || !summary.unknown_models.empty() || !(settings_error_of(summary) > 0)) return {};
+  return std::hypot(settings_error_of(summary), *summary.model_error);
+}
+
+std::string whole_error_text(const Summary& summary) {
+  const std::optional<double> whole = whole_error(summary);
+  return whole ? fmt::format("about {} against random walks{}, of which", short_percent(*whole),
+                             summary.leaves_out_reentry ? " without re-entry" : "")
+               : "";
 }
 
 /// Error due to settings: samples, tolerance, shadow rays, cells.
@@ -114,10 +136,10 @@ void print_text(const Summary& summary) {
                              "rms over the surface)",
                              grouped(summary.walks), 100 * summary.walk_noise));
   if (summary.camera_rays) row("camera rays", camera_rays_text(*summary.camera_rays));
-  const std::string settings_error = settings_error_text(summary);
-  if (!settings_error.empty()) row("error", settings_error);
-  const std::string model_error = model_error_text(summary);
-  if (!model_error.empty()) row(settings_error.empty() ? "error" : "", model_error);
+  const char* label = "error";
+  for (const std::string& text :
+       {whole_error_text(summary), settings_error_text(summary), model_error_text(summary)})
+    if (!text.empty()) row(std::exchange(label, ""), text);
   constexpr std::size_t kMostLines = 3;
   std::vector<LightNoise> worst = summary.noise;
   std::ranges::stable_sort(worst, std::greater(), &LightNoise::relative_error);
@@ -173,6 +195,7 @@ Json done_json(const Summary& summary) {
             {"embree_cpu_seconds", summary.embree_seconds},
             {"outputs", summary.outputs}};
   if (summary.model_error) json["model_error"] = *summary.model_error;
+  if (const std::optional<double> whole = whole_error(summary)) json["error_against_random_walks"] = *whole;
   if (!summary.unknown_models.empty()) json["bodies_of_unknown_model_error"] = summary.unknown_models;
   if (const auto& rays = summary.camera_rays) {
     json["camera_rays"] = {{"mean", rays->mean},

@@ -11,7 +11,7 @@ std::vector<std::string> chosen_overrides(const Session& session, std::size_t en
   const Settings& settings = session.scene().settings;
   if (settings.method == Method::direct) return {fmt::format("settings.entry_samples={}", entry_samples)};
   const std::string method = fmt::format("settings.method={}", name_of(settings.method));
-  if (settings.method == Method::volume_diffusion)
+  if (settings.method != Method::hierarchical)
     return {method, fmt::format("settings.cell_size={}", settings.cell_size)};
   std::vector<std::string> overrides{method, fmt::format("settings.tolerance={}", settings.tolerance),
                                      fmt::format("settings.evaluator={}", name_of(settings.evaluator))};

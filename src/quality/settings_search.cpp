@@ -21,7 +21,8 @@ constexpr double kTolerancePerError = 0.5, kLeastTolerance = 5e-4, kMostToleranc
 void SettingsSearch::begin(double tolerance) {
   Settings& settings = scene.settings;
   settings.tolerance = tolerance;
-  if (settings.evaluator == EvaluatorKind::automatic) settings.evaluator = EvaluatorKind::dual_tree;
+  if (settings.method == Method::hierarchical && settings.evaluator == EvaluatorKind::automatic)
+    settings.evaluator = EvaluatorKind::dual_tree;
   session.edit(scene);
   double largest = 0;
   for (const BodyPlan& group : session.plan().groups) {

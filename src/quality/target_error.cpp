@@ -105,7 +105,7 @@ TargetError reach_error(Session& session, Scene scene, double target, Monitor* m
   }
   const double samples = approach(search, std::move(first), start, target);
   if (scene.settings.evaluator == EvaluatorKind::automatic) choose_evaluator(search, target);
-  result.predicted = search.estimated;
+  result.predicted = result.of_settings = search.estimated;
   result.reached = result.predicted <= target;
   result.is_short_of_rays = !result.reached && samples < search.most_samples;
   result.samples = search.planned_samples();

@@ -16,11 +16,12 @@ namespace opaline {
 /// antialiasing and the error of the diffusion model.
 struct TargetError {
   double predicted = 0;     ///< error; 0 if no translucent shape is visible
+  double of_settings = 0;   ///< the same without the model error
   std::size_t samples = 0;  ///< requested, of all bodies
   bool reached = true;      ///< false: settings.max_samples, kMostShadowRays or the model limits the error
   bool is_short_of_rays = false;  ///< limited by kMostShadowRays
   bool sees_translucent = true;   ///< false: no error to predict
-  /// For reach_volume_error: bound of the model error, none if a mesh is open or too thin; and the predicted
+  /// For reach_volume_error: bounded_model_error; and the predicted
   /// error: the target, or the least possible one with this model.
   std::optional<double> model = {};
   double promised = 0;
@@ -36,16 +37,15 @@ struct TargetError {
 /// error as Session::edit and Session::prepare
 TargetError reach_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);
 
-/// Like reach_error for Method::volume_diffusion, against random walks (Method::volume). The target is for
+/// Like reach_error for volume_diffusion, or `auto` with cells in a body, against random walks (Method::volume). The target is for
 /// the sum of the model error, a bound from the plan, and the estimated error of cells, samples and shadow
 /// rays. Chooses cell_size, sample_spacing and light_samples, trying coarse cells first. If the model error
 /// alone exceeds the target, chooses settings for the least possible error, and sets `reached` to false.
-/// in    scene: volume_diffusion; target: relative, > 0
+/// in    target: relative, > 0
 /// error as Session::edit and Session::prepare
 TargetError reach_volume_error(Session& session, Scene scene, double target, Monitor* monitor = nullptr);
 
-/// The session's scene for a choice of settings. Replaces the method `auto`: by volume_diffusion if its model error
-/// is known for all bodies, else by hierarchical.
+/// The session's scene for a choice of settings. The method of all bodies replaces `auto`, if it is the same.
 Scene with_named_method(const Session& session);
 
 /// Chosen settings, by reach_error or for a time, as for `--set`; without light_samples.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cells, samples and shadow rays of volume_diffusion for a target error against random walks.
+// Cells, samples and shadow rays of bodies with cells for a target error against random walks.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -98,8 +98,12 @@ class VolumeSearch {
 Scene with_named_method(const Session& session) {
   Scene scene = session.scene();
   if (scene.settings.method != Method::automatic) return scene;
-  const bool is_promised = !session.plan().groups.empty() && bounded_model_error(session.plan());
-  scene.settings.method = is_promised ? Method::volume_diffusion : Method::hierarchical;
+  const std::vector<BodyPlan>& bodies = session.plan().groups;
+  const auto has_cells = [](const BodyPlan& body) { return body.method == Method::volume_diffusion; };
+  if (std::ranges::none_of(bodies, has_cells))
+    scene.settings.method = Method::hierarchical;
+  else if (std::ranges::all_of(bodies, has_cells))
+    scene.settings.method = Method::volume_diffusion;
   return scene;
 }
 
@@ -126,7 +130,8 @@ TargetError reach_volume_error(Session& session, Scene scene, double target, Mon
     cells = smallest_cell_size(search.plan());
   }
   search.settle_light(.5 * left);
-  result.predicted = std::hypot(model, search.estimated());
+  result.of_settings = search.estimated();
+  result.predicted = std::hypot(model, result.of_settings);
   result.promised = promised;
   result.reached = result.model && result.predicted <= target;
   result.samples = search.samples();

@@ -248,7 +248,7 @@ TimeBudget BudgetSearch::run(const FinishPicture& finish) {
   try_more();
   Choice plan = with_tolerance();
   if (open) plan = with_evaluator(plan);
-  result.predicted = predicted(plan.samples);
+  result.predicted = result.of_settings = predicted(plan.samples);
   result.at_most = plan.samples > 0.999 * search_.most_samples;
   result.planned = spent() + plan.cost + finishing_;
   result.fits = result.planned <= seconds_;
@@ -261,7 +261,7 @@ TimeBudget BudgetSearch::run(const FinishPicture& finish) {
 TimeBudget fit_budget(Session& session, Scene scene, double seconds, const FinishPicture& finish,
                       Monitor* monitor) {
   TimeBudget result;
-  if (scene.settings.method == Method::volume_diffusion) {
+  if (scene.settings.method != Method::hierarchical) {
     result = fit_cells(session, scene, seconds, finish, monitor);
   } else {
     BudgetSearch search(session, scene, seconds, monitor);

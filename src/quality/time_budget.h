@@ -14,7 +14,8 @@ namespace opaline {
 /// Chosen settings and their expected cost and error.
 struct TimeBudget {
   std::optional<double>
-      predicted;            ///< error as in TargetError; none: unknown, or too little time for an estimate
+      predicted,            ///< error as in TargetError; none: unknown, or too little time for an estimate
+      of_settings;          ///< the same without the model error
   std::size_t samples = 0;  ///< requested, of all bodies
   double planned = 0;       ///< CPU from the call to the end of `finish`, s
   bool fits = true;         ///< false: the cheapest settings exceed the time
@@ -29,10 +30,10 @@ using FinishPicture = std::function<void(const Image& picture)>;
 /// system) of prepare, render and finish, a tolerance matching the error, and the better evaluator if the
 /// scene leaves it open. Predicts costs from a few small images, tiles of the full one, and small files.
 /// Shadow rays and the film remain the scene's. The choice depends on the clock.
-/// With volume_diffusion, chooses cells as small as fit into the time, unless the error of the model exceeds theirs by far,
+/// With volume_diffusion, or auto with cells in a body, chooses cells as small as fit into the time, unless the error of the model exceeds theirs by far,
 /// and predicts the error against random walks.
 /// in    scene: hierarchical, evaluator not classic; its samples, sample_spacing and tolerance are replaced; or
-///       volume_diffusion; its cell_size is replaced;
+///       one with cells; its cell_size is replaced;
 ///       session: without a cache, whose hits would cost nothing; seconds: CPU from this call to the end of
 ///       finish, > 0
 /// out   prepare, render and finish then take at most 110 % of it in about 95 % of cases, unless `fits` is

@@ -125,6 +125,7 @@ TimeBudget VolumeBudgetSearch::run(const FinishPicture& finish) {
     if (planned < .98 * cell) cost = seconds * std::pow(factor * cell / planned, power());
   }
   const double error = estimated * std::pow(smallest_cell(search_.session.plan()) / cell, kErrorOrder);
+  result.of_settings = error;
   if (model_) result.predicted = std::hypot(*model_, error);
   result.planned = spent() + cost + afterwards_;
   result.fits = result.planned <= seconds_;

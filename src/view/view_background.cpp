@@ -135,7 +135,7 @@ void ViewBackground::choose(const Job& job, double target_error) {
   session_->edit(job.scene);
   const Scene scene = with_named_method(*session_);
   const Settings& settings = scene.settings;
-  const bool is_volume = settings.method == Method::volume_diffusion;
+  const bool is_volume = settings.method == Method::volume_diffusion || settings.method == Method::automatic;
   if (!is_volume && (settings.method != Method::hierarchical || settings.evaluator == EvaluatorKind::classic))
     throw Error(ErrorKind::bad_input, {}, 0, 0,
                 "a target error requires hierarchical evaluation or volume_diffusion",

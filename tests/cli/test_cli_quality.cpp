@@ -37,9 +37,9 @@ TEST(CliQuality, StatesPredictedAndMeasured) {
   const QualityFolder folder;
   const Outcome text = folder.render({"--target-error", "6%", "--verify"});
   ASSERT_EQ(text.exit_code, 0) << text.err;
-  const std::size_t at = text.out.find("\nerror ");
-  ASSERT_NE(at, std::string::npos) << text.out;
-  const std::string line = text.out.substr(at + 1, text.out.find('\n', at + 1) - at - 1);
+  const std::size_t at = text.out.find("\nerror "), settings = text.out.find("settings predicted ");
+  ASSERT_TRUE(at < settings && settings != std::string::npos) << text.out;
+  const std::string line = text.out.substr(settings, text.out.find('\n', settings) - settings);
   EXPECT_TRUE(contains(line, "predicted ") && contains(line, ", measured ") && contains(line, " +- "))
       << line;
   EXPECT_TRUE(contains(text.out, "target      6 %:")) << text.out;
@@ -96,7 +96,8 @@ std::string closing_line(const std::string& out, const std::string& label) {
 
 // Claim: --target-error and --time-budget replace `auto` by the method of all bodies, --verify by hierarchical; the command
 // under "repeat with" names it. Source: quality.h. Fails if: settings are chosen for `auto`, which has none of its own, or the
-// repeated image is by another method, or a target without the error of the model is silent.
+// repeated image is by another method, a target without the error of the model is silent, or one body by hierarchical, or a thin
+// one, takes the cells from all bodies.
 TEST(CliQuality, AChoiceNamesTheMethodOfAuto) {
   const SceneFolder folder;
   const auto repeated = [&](std::vector<std::string> words) {
@@ -112,9 +113,17 @@ TEST(CliQuality, AChoiceNamesTheMethodOfAuto) {
       << cells;
   const std::string profile = repeated({"--target-error", "9%", "--set", "media.marble.profile=dipole"});
   EXPECT_TRUE(contains(profile, "settings.method=hierarchical")) << profile;
+  const std::string thin = repeated({"--target-error", "9%", "--size", "0.5mm"});
+  EXPECT_TRUE(contains(thin, "settings.method=volume_diffusion")) << thin;
   const std::string budget = repeated({"--time-budget", "1s"});
   EXPECT_TRUE(contains(budget, "settings.method=volume_diffusion") && contains(budget, "settings.cell_size="))
       << budget;
+  std::string text = bytes_of(folder.scene);
+  text.insert(text.find("}],"), R"(}, {"name": "other", "sphere": {"radius": 4}, "medium": "other")");
+  text.insert(text.find("\"marble\": {"), R"("other": {"preset": "marble", "profile": "dipole"}, )");
+  put_bytes(folder.scene, text);
+  const std::string mixed = repeated({"--target-error", "9%"});
+  EXPECT_TRUE(contains(mixed, "settings.method=auto") && contains(mixed, "settings.cell_size=")) << mixed;
 }
 
 // Claim: the closing lines state the predicted and the measured error, the CPU of the whole table against the

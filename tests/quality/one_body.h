@@ -6,12 +6,13 @@
 
 namespace opaline::test {
 
-/// pixels: of the picture's sides
+/// By hierarchical evaluation. pixels: of the picture's sides
 inline Scene one_body(ShapeSource source, const Medium& medium, const Light& light, int pixels) {
   Scene scene = single_shape(std::move(source), medium, 1);
   scene.lights = {light};
   scene.camera.position = {10, 25, 45};
   scene.film.resolution = {pixels, pixels};
+  scene.settings.method = Method::hierarchical;
   return scene;
 }
 

@@ -18,6 +18,7 @@ std::vector<Scene> small_scenes() {
               ProfileKind::normalized_diffusion};
   skin.fit = NormalizedDiffusionFit::diffuse_entry;
   Scene balls = two_balls();
+  balls.settings.method = Method::hierarchical;
   balls.film.resolution = {96, 64};
   for (Shape& shape : balls.shapes) shape.reflectance = {};  // as the promise leaves it out
   return {one_body(TorusShape{{}, 10, 4}, skin, point_light({30, 40, 10}, {1e4, 1e4, 1e4}), 96),

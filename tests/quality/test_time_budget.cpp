@@ -16,6 +16,7 @@ constexpr int kPictureSide = 160;
 /// The torus shadows itself, the box has edges, the balls an opaque floor under an area light.
 std::vector<Scene> budget_scenes() {
   Scene balls = two_balls();
+  balls.settings.method = Method::hierarchical;
   balls.film.resolution = {96, 64};
   return {marble_torus(kPictureSide),
           one_body(BoxShape{{-9, -9, -9}, {9, 9, 9}}, grey_medium(.4, .01, 1.3),

@@ -370,10 +370,12 @@ const takes = {
     if (message.revision !== plan.revision) return;
     report = message;
     one("error").dataset.revision = message.revision;
-    const errors = [[message.error, "settings"], [plan.model_error, "model"]].filter(([error]) => error > 0)
-      .map(([error, of]) => `${of} error about ${Number((100 * error).toPrecision(2))} %`);
-    if (plan.model_is_unknown) errors.push(plan.model_error > 0 ? "unknown for some bodies" : "model error unknown");
-    one("error").textContent = errors.join(", ");
+    const percent = (error) => `${Number((100 * error).toPrecision(2))} %`;
+    const errors = [[message.error, "settings"], [plan.model_error, "model"]].filter(([error]) => error > 0);
+    const parts = errors.map(([error, of]) => `${of} error about ${percent(error)}`);
+    if (plan.model_is_unknown) parts.push(plan.model_error > 0 ? "unknown for some bodies" : "model error unknown");
+    one("error").textContent = errors.length === 2 && !plan.model_is_unknown
+      ? `error about ${percent(Math.hypot(message.error, plan.model_error))} (${parts.join(", ")})` : parts.join(", ");
     showPlan();
   },
   work: ({stage, done, total}) => {
